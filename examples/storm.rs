@@ -17,9 +17,9 @@ mod floor_plans;
 #[macro_use]
 mod say;
 
-use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
-use clap::{Parser, Subcommand, value_parser};
-use floor_plans::in_storms::{SHIPPED, mission_in_storm, shipped};
+use clap::builder::PossibleValuesParser;
+use clap::{Parser, Subcommand};
+use floor_plans::in_storms::{self, SHIPPED, mission_in_storm, shipped};
 use floor_plans::strategies;
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
@@ -44,10 +44,10 @@ struct CommandLine {
     #[command(subcommand)]
     command: Option<Command>,
     /// How many missions, of all kinds, in shipped scenarios and on random floor plans in turn
-    #[arg(required = true, value_parser = at_least_one())]
+    #[arg(required = true, value_parser = in_storms::missions)]
     missions: Option<u64>,
     /// The seed of the first
-    #[arg(default_value_t = 0)]
+    #[arg(default_value_t = 0, value_parser = in_storms::seed)]
     first: u64,
     /// When recruits are called for: paper or eager
     #[arg(long, global = true, value_parser = strategies::named)]
@@ -57,27 +57,27 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// Tells the mission of a seed
-    Seed { seed: u64 },
+    Seed {
+        #[arg(value_parser = in_storms::seed)]
+        seed: u64,
+    },
     /// Tells the mission of a shipped scenario in a kind of storm
     One {
         #[arg(value_parser = PossibleValuesParser::new(SHIPPED))]
         scenario: String,
         #[arg(value_parser = kind)]
         kind: Kind,
+        #[arg(value_parser = in_storms::seed)]
         seed: u64,
     },
     /// Prints what becomes of shipped scenarios under each kind of storm
     Table {
         /// Storms of each kind for each scenario
-        #[arg(value_parser = at_least_one())]
+        #[arg(value_parser = in_storms::count)]
         seeds: u64,
         /// Only kinds with this in their name
         kind: Option<String>,
     },
-}
-
-fn at_least_one() -> RangedU64ValueParser {
-    value_parser!(u64).range(1..)
 }
 
 fn kind(name: &str) -> Result<Kind, String> {

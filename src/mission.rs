@@ -21,6 +21,7 @@ use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason, System};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
+use crate::story;
 use crate::verify::network::judge::missing;
 use crate::verify::network::storm::{self, Storm};
 use crate::verify::network::{Extremes, Referee, Violation};
@@ -402,7 +403,8 @@ fn beside_bodies(end: &End) -> Option<String> {
     let is_beside = |standing: &&Standing| standing.hindrances.iter().any(is_body);
     let robots: Vec<usize> = team.iter().filter(is_beside).map(|it| it.robot).collect();
     (!robots.is_empty()).then(|| {
-        format!("{}; a robot of another access point stands beside robots {robots:?}", end.reason)
+        let robots = story::robots(&robots);
+        format!("{}; a robot of another access point stands beside {robots}", end.reason)
     })
 }
 

@@ -49,9 +49,9 @@ impl Moment {
     }
 }
 
-/// What is told of a team whose task is taken back in the control period of the event: events name teams as they are
-/// at its end.
-const DISSOLVED: &str = "and the team is dissolved in the same control period";
+/// What is told of a team whose task is taken back, or whose leader stops, in the control period of the event: events
+/// name teams as they are at its end.
+const LEADERLESS: &str = "which has no leader at the end of the control period";
 
 /// Tells an event as a sentence without its end; robots and tasks are numbered from 0.
 #[must_use]
@@ -111,7 +111,7 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
         ),
         MissionEvent::Stationary { robot, team } => (
             match team.as_slice() {
-                [] => format!("the team of robot {robot} is at a stationary point, {DISSOLVED}"),
+                [] => format!("the team of robot {robot} is at a stationary point, {LEADERLESS}"),
                 team => format!(
                     "the primary team {} is at a stationary point, robot {robot} last",
                     list(team)
@@ -149,7 +149,7 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
         }
         MissionEvent::JoinedPrimary { robot, team } => (
             match team.as_slice() {
-                [] => format!("robot {robot} joins the primary team, {DISSOLVED}"),
+                [] => format!("robot {robot} joins the primary team, {LEADERLESS}"),
                 team => format!("robot {robot} joins the primary team, now {}", list(team)),
             },
             moment(
@@ -197,13 +197,15 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             None,
         ),
         MissionEvent::TaskReannounced { task, gone, joined } => {
-            let gone = match gone[..] {
-                [] => String::new(),
-                _ => format!("robots {gone:?} do not answer any more: "),
+            let gone = match gone.len() {
+                0 => String::new(),
+                1 => format!("{} does not answer any more: ", robots(gone)),
+                _ => format!("{} do not answer any more: ", robots(gone)),
             };
-            let joined = match joined[..] {
-                [] => String::new(),
-                _ => format!(", and robots {joined:?} take part from now on"),
+            let joined = match joined.len() {
+                0 => String::new(),
+                1 => format!(", and {} takes part from now on", robots(joined)),
+                _ => format!(", and {} take part from now on", robots(joined)),
             };
             (format!("{gone}task {task} is announced again{joined}"), None)
         }
@@ -232,6 +234,12 @@ fn enumeration(robots: &[usize]) -> String {
         [first @ .., last] if !first.is_empty() => format!("{} and {last}", joined(first, ", ")),
         only => joined(only, ""),
     }
+}
+
+/// "robot 2", "robots 2, 5 and 7".
+pub(crate) fn robots(robots: &[usize]) -> String {
+    let noun = if robots.len() == 1 { "robot" } else { "robots" };
+    format!("{noun} {}", enumeration(robots))
 }
 
 fn joined(robots: &[usize], between: &str) -> String {

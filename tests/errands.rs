@@ -195,14 +195,14 @@ fn what_is_over_is_shown() {
 
 /// A robot may join the primary team in the very control period in which the task is taken back.
 #[test]
-fn a_team_that_is_dissolved_is_told_as_such() {
+fn a_team_that_is_dissolved_is_told_to_have_no_leader() {
     let is_join = |(_, event): &(usize, &Event)| matches!(event, Event::JoinedPrimary { .. });
     let (step, _) = errands().events().find(is_join).unwrap();
     let mut scenario = shipped("errands");
     scenario.task[0].withdrawn = Some(step as u32);
     let mission = run(scenario);
     let told: Vec<String> = mission.events().map(|(_, event)| story::tell(event)).collect();
-    let dissolved = "joins the primary team, and the team is dissolved in the same control period";
+    let dissolved = "joins the primary team, which has no leader at the end of the control period";
     assert!(told.iter().any(|it| it.contains(dissolved)), "{told:?}");
     assert!(told.iter().all(|it| !it.contains("[]")), "{told:?}");
 }

@@ -107,7 +107,7 @@ fn last_step(lines: &mut [Value]) -> &mut Value {
     lines.iter_mut().rev().find(is_step).unwrap()
 }
 
-const SPOILS: [Spoil; 11] = [
+const SPOILS: [Spoil; 14] = [
     (
         "a robot leaps",
         |lines| {
@@ -178,6 +178,29 @@ const SPOILS: [Spoil; 11] = [
     (
         "a control period is left out",
         |lines| lines.retain(|line| line["k"] != 20),
+        Property::Record,
+    ),
+    (
+        "a robot is absent, and no node fails",
+        |lines| last_step(lines)["absent"] = json!([3]),
+        Property::Record,
+    ),
+    (
+        "there are more periods than the scenario allows",
+        |lines| {
+            let last = last_step(lines)["k"].clone();
+            lines[0]["scenario"]["control"]["max_steps"] = last;
+        },
+        Property::Record,
+    ),
+    (
+        "the mission of one team shows fleets",
+        |lines| {
+            last_step(lines)["fleets"] = json!([{
+                "access_point": 0, "phase": "idle", "task": null, "active_team": [],
+                "primary_team": [], "path": [],
+            }]);
+        },
         Property::Record,
     ),
     (

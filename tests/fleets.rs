@@ -115,10 +115,26 @@ fn a_team_that_a_body_blocks_says_so() {
     let path = "tests/scenarios/given-up/body-in-corridor.toml";
     let mission = run(pleach::scenario_file::read(path.as_ref()).unwrap().into_scenario());
     assert_eq!(mission.end.outcome, Outcome::Blocked, "{}", mission.end.reason);
-    let told = "a robot of another access point stands beside robots [2]";
+    let told = "a robot of another access point stands beside robot 2";
     assert!(mission.end.reason.ends_with(told), "{}", mission.end.reason);
     let task_of_other = mission.end.fleets[1].end.outcome;
     assert_eq!(task_of_other, Outcome::Serviced, "it has none");
+}
+
+/// Flows lag behind where messages are lost. The links of the team carry all the same: what it is told to be blocked
+/// by is what stands in its way.
+#[test]
+fn a_team_that_a_body_blocks_does_not_blame_its_links_where_messages_are_lost() {
+    let path = "tests/scenarios/given-up/body-in-corridor.toml";
+    let scenario = pleach::scenario_file::read(path.as_ref()).unwrap();
+    for (loss, seed) in [(0.05, 1), (0.1, 2), (0.2, 3), (0.3, 4)] {
+        let weather = Weather { loss, ..Weather::default() };
+        let lossy = Storm { seed, weather, troubles: Vec::new() };
+        let end = mission::run_in_storm(&scenario, &lossy, &mut []).unwrap().end;
+        assert_eq!(end.outcome, Outcome::Blocked, "{loss} {seed}: {}", end.reason);
+        let told = "something stands in its way, and a recruit would not help";
+        assert!(end.reason.ends_with(told), "{loss} {seed}: {}", end.reason);
+    }
 }
 
 /// Interrupts a mission after this many control periods.
@@ -233,10 +249,13 @@ fn end(lines: &mut [Value]) -> &mut Value {
     lines.last_mut().unwrap()
 }
 
+/// Control periods: more than it takes until the end is heard and robots have settled, as they may after a service.
+const LATE: u64 = 11;
+
 type Spoil = (&'static str, fn(&mut Vec<Value>), &'static [Property]);
 
 /// The robots of access point 0 are those from 0 to 5, of access point 1 those from 6 to 11; its own node is 13.
-const SPOILS: [Spoil; 14] = [
+const SPOILS: [Spoil; 17] = [
     (
         "a robot of one fleet stands on one of the other",
         |lines| {
@@ -314,6 +333,35 @@ const SPOILS: [Spoil; 14] = [
         &[Property::Outcome],
     ),
     (
+        "a mission is over later than it is",
+        |lines| {
+            let is_step = |line: &&mut Value| line["type"] == "step";
+            for step in lines.iter_mut().filter(is_step) {
+                let (k, fleet) = (step["k"].as_u64().unwrap(), &mut step["fleets"][0]);
+                let Some(ended) = fleet["ended"].as_u64() else { continue };
+                let late = ended + LATE;
+                match k < late {
+                    true => drop(fleet.as_object_mut().unwrap().remove("ended")),
+                    false => fleet["ended"] = json!(late),
+                }
+            }
+        },
+        &[Property::Outcome],
+    ),
+    (
+        "there are more periods than the scenario allows",
+        |lines| lines[0]["scenario"]["control"]["max_steps"] = json!(255),
+        &[Property::Record],
+    ),
+    (
+        "a fleet ended as fleets do",
+        |lines| {
+            let fleets = end(lines)["fleets"].clone();
+            end(lines)["fleets"][0]["fleets"] = fleets;
+        },
+        &[Property::Outcome],
+    ),
+    (
         "it is not told how a fleet ended",
         |lines| {
             end(lines)["fleets"].as_array_mut().unwrap().pop();
@@ -332,6 +380,19 @@ const SPOILS: [Spoil; 14] = [
     ),
 ];
 
+/// A fleet is judged as a mission of its own, in which robots and tasks have numbers of their own.
+#[test]
+fn a_violation_says_which_robots_and_tasks_of_the_scenario_it_speaks_of() {
+    let mut lines = sound();
+    let at = event(&lines, "leader_elected", 6);
+    lines.remove(at);
+    let Verdict::Violated(violation) = verdict_of(&lines) else { panic!("it is judged sound") };
+    let told = "in the mission of access point 1, whose robots [6, 7, 8, 9, 10, 11] and tasks [1, 3] are here \
+                numbered from 0 in this order: ";
+    assert!(violation.sentence.starts_with(told), "{violation}");
+    assert!(violation.robots.iter().all(|robot| (6..12).contains(robot)), "{violation:?}");
+}
+
 #[test]
 fn spoiled_traces_of_fleets_are_told_from_sound_ones() {
     assert!(matches!(verdict_of(&sound()), Verdict::Sound { periods: 256, .. }));
@@ -342,6 +403,9 @@ fn spoiled_traces_of_fleets_are_told_from_sound_ones() {
             Verdict::Sound { .. } => panic!("{name}: it is judged sound"),
             Verdict::Violated(violation) => {
                 assert!(properties.contains(&violation.property), "{name}: {violation}");
+                let sentence = &violation.sentence;
+                assert!(!sentence.contains("Some(") && !sentence.contains("None"), "{sentence}");
+                assert!(!sentence.contains(" { "), "an event as the program has it: {sentence}");
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example storm -- table 4` shows all kinds of storms, and what breaks in them.
 
-use crate::floor_plans::in_storms::{DURATION, mission_of_turn, shipped};
+use crate::floor_plans::in_storms::{self, DURATION, mission_of_turn, shipped};
 use crate::floor_plans::strategies;
 use crate::stressed::stressed_scenarios;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome};
@@ -275,7 +275,7 @@ fn a_robot_whose_partner_stops_in_an_exchange_answers_again() {
         let crash = Crash { time, inputs: 0, back: None };
         let end = end_although_one_stops(name, robot, crash, 1_000);
         // The one that has stopped stands in the only way.
-        let names = format!("robots [{robot}] have stopped");
+        let names = format!("robot {robot} has stopped");
         assert!(end.reason.contains(&names), "{name}: {}", end.reason);
     }
 }
@@ -410,5 +410,21 @@ fn the_mission_goes_on_without_a_robot_that_stops() {
         }
     }
     assert!(blocked.len() < 2, "{blocked:?}");
-    assert!(blocked.iter().all(|(.., reason)| reason.contains("have stopped")), "{blocked:?}");
+    assert!(
+        blocked
+            .iter()
+            .all(|(.., reason)| reason.contains(" stopped, or no access point hears of ")),
+        "{blocked:?}"
+    );
+}
+
+/// The first argument of the example `storm` is a number, or names what else it does.
+#[test]
+fn a_number_of_missions_that_is_none_is_refused_with_what_may_stand_there() {
+    assert_eq!((in_storms::missions("12"), in_storms::seed("0")), (Ok(12), Ok(0)));
+    let refused = in_storms::missions("x").unwrap_err();
+    assert!(refused.starts_with("a whole number from 1 to "), "{refused}");
+    assert!(refused.contains("seed, one and table"), "{refused}");
+    assert!(in_storms::count("0").unwrap_err().contains("from 1 to"));
+    assert!(in_storms::seed("-1").unwrap_err().contains("from 0 to"));
 }

@@ -9,9 +9,10 @@ use super::status::{Failure, Status};
 use super::sweep::Sweep;
 use super::terminal;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
-use pleach::automaton::network::scenario::{Fleet, Remark, Scenario, ValidScenario};
+use pleach::automaton::network::scenario::{Fleet, Remark, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -70,7 +71,7 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
             ),
         ),
     ];
-    rows.extend(scenario.fleets().iter().map(|fleet| ("team", team(fleet))));
+    rows.extend(scenario.fleets().iter().map(|fleet| ("team", team(fleet, scenario))));
     rows.extend(drawing.map(|path| ("start", path.display().to_string())));
     rows.extend(remarks::lines(remarks).into_iter().map(|line| ("remark", line)));
     let rows = rows.iter().map(|(label, text)| format!("  {label:<19} {text}\n"));
@@ -81,20 +82,44 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
 fn longest_link(scenario: &ValidScenario) -> String {
     let fleets = scenario.fleets().iter().map(Fleet::scenario);
     let scenarios = if scenario.fleets().is_empty() { vec![scenario] } else { fleets.collect() };
-    let mut lengths: Vec<String> =
+    let lengths: BTreeSet<String> =
         scenarios.into_iter().map(|it| quantity(it.site().usual.build)).collect();
-    lengths.dedup();
+    let lengths: Vec<String> = lengths.into_iter().collect();
     format!("{}, along the shortest way around walls", lengths.join(" and "))
 }
 
-fn team(fleet: &Fleet) -> String {
-    let Scenario { robot, task, .. } = fleet.scenario().scenario();
-    let counted = |count: usize, noun: &str| match count {
-        1 => format!("1 {noun}"),
-        count => format!("{count} {noun}s"),
+/// Which robots pursue which tasks, and from where.
+fn team(fleet: &Fleet, whole: &ValidScenario) -> String {
+    let access_point = fleet.access_point();
+    let [x, y] = whole.access_point[access_point].position;
+    let tasks = (0..fleet.scenario().task.len()).filter_map(|task| fleet.outward().task(task));
+    let tasks = match tasks.collect::<Vec<_>>() {
+        none if none.is_empty() => "no task".to_owned(),
+        tasks => numbered("task", &tasks),
     };
-    let (robots, tasks) = (counted(robot.len(), "robot"), counted(task.len(), "task"));
-    format!("{robots} and {tasks} of access point {}", fleet.access_point())
+    let robots = numbered("robot", fleet.robots());
+    format!("access point {access_point} at ({x}, {y}): {robots}; {tasks}")
+}
+
+/// "robot 3", "robots 0 to 3 and 6": numbers in a row by the first and the last of them.
+fn numbered(noun: &str, numbers: &[usize]) -> String {
+    let plural = if numbers.len() == 1 { "" } else { "s" };
+    let rows = numbers.chunk_by(|one, next| one + 1 == *next);
+    let rows: Vec<String> = rows.flat_map(row).collect();
+    match rows.split_last() {
+        Some((last, first)) if !first.is_empty() => {
+            format!("{noun}{plural} {} and {last}", first.join(", "))
+        }
+        _ => format!("{noun}{plural} {}", rows.concat()),
+    }
+}
+
+/// The numbers of a row, or its ends if it is long.
+fn row(numbers: &[usize]) -> Vec<String> {
+    match numbers {
+        [first, _, .., last] => vec![format!("{first} to {last}")],
+        few => few.iter().map(usize::to_string).collect(),
+    }
 }
 
 fn workspace(scenario: &ValidScenario) -> String {
@@ -156,5 +181,56 @@ impl Watcher for Opening {
 
     fn interruption(&self) -> Option<String> {
         Some("only the start is looked at".into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pleach::automaton::network::scenario::Scenario;
+    use serde_json::json;
+
+    #[test]
+    fn numbers_in_a_row_are_told_by_their_ends() {
+        let told = [&[4][..], &[0, 1], &[0, 1, 2, 3, 6], &[1, 3, 4, 5, 7]]
+            .map(|numbers| numbered("robot", numbers));
+        let expected =
+            ["robot 4", "robots 0 and 1", "robots 0 to 3 and 6", "robots 1, 3 to 5 and 7"];
+        assert_eq!(told, expected);
+    }
+
+    /// The teams of access points 0 and 2 have the same rates, and so the same lengths.
+    #[test]
+    fn every_length_of_links_is_told_once_and_every_team_with_its_tasks() {
+        let robot = |x: f64, rate: f64| json!({"position": [x, 0.5], "rate": rate});
+        let scenario: Scenario = serde_json::from_value(json!({
+            "name": "three",
+            "workspace": {"boundary": [[0.0, 0.0], [6.0, 0.0], [6.0, 1.0], [0.0, 1.0]]},
+            "link": {"full_range": 0.4, "max_range": 0.5},
+            "control": {"teams": "per_access_point"},
+            "access_point": [
+                {"position": [1.0, 0.2]}, {"position": [3.0, 0.2]}, {"position": [5.0, 0.2]},
+            ],
+            "robot": [robot(1.0, 0.05), robot(3.0, 0.4), robot(5.0, 0.05)],
+            "task": [{"position": [5.2, 0.8]}, {"position": [1.2, 0.8]}, {"position": [5.4, 0.8]}],
+        }))
+        .unwrap();
+        let scenario = ValidScenario::new(scenario).unwrap();
+        let [of_first, of_second] = [0, 1].map(|fleet| {
+            let fleet: &Fleet = &scenario.fleets()[fleet];
+            quantity(fleet.scenario().site().usual.build)
+        });
+        assert_ne!(of_first, of_second);
+        let told = longest_link(&scenario);
+        assert_eq!(told.matches(&of_first).count(), 1, "{told}");
+        assert_eq!(told.matches(" and ").count(), 1, "{told}");
+        let teams: Vec<String> =
+            scenario.fleets().iter().map(|fleet| team(fleet, &scenario)).collect();
+        let expected = [
+            "access point 0 at (1, 0.2): robot 0; task 1",
+            "access point 1 at (3, 0.2): robot 1; no task",
+            "access point 2 at (5, 0.2): robot 2; tasks 0 and 2",
+        ];
+        assert_eq!(teams, expected);
     }
 }

@@ -61,20 +61,28 @@ impl Range {
     fn of(value: &str) -> Result<Option<Self>, String> {
         let Some((from, rest)) = value.split_once("..") else { return Ok(None) };
         let (to, count) = rest.split_once(':').unwrap_or((rest, ""));
-        let [from, to]: [Option<f64>; 2] = [from, to].map(|text| text.trim().parse().ok());
-        if from.or(to).is_none() {
+        let [from, to, count] = [from, to, count].map(str::trim);
+        let number = |text: &str| text.parse::<f64>().ok();
+        if number(from).or(number(to)).is_none() {
             return Ok(None);
         }
-        let wrong = || {
+        let wrong = |part: &str, text: &str, right: &str| {
+            let what =
+                if text.is_empty() { "is missing".to_owned() } else { format!("is {text:?}") };
             format!(
-                "{value:?} is no range: write FROM..TO:COUNT with two numbers and the count of \
-                 values, from 2 to {MOST_VALUES}, such as 0.01..0.03:5"
+                "{value:?} is no range FROM..TO:COUNT, such as 0.01..0.03:5: {part} {what}, and must be \
+                 {right}"
             )
         };
-        let [from, to] = [from, to].map(|end| end.filter(|end| end.is_finite()));
-        let (from, to) = from.zip(to).ok_or_else(wrong)?;
-        let count = count.trim().parse().ok().filter(|count| (2..=MOST_VALUES).contains(count));
-        Ok(Some(Self { from, to, count: count.ok_or_else(wrong)? }))
+        let end = |part: &str, text: &str| {
+            let finite = number(text).filter(|end| end.is_finite());
+            finite.ok_or_else(|| wrong(part, text, "a number"))
+        };
+        let (from, to) = (end("FROM", from)?, end("TO", to)?);
+        let counted = count.parse().ok().filter(|count| (2..=MOST_VALUES).contains(count));
+        let right = format!("a whole number from 2 to {MOST_VALUES}");
+        let count = counted.ok_or_else(|| wrong("COUNT", count, &right))?;
+        Ok(Some(Self { from, to, count }))
     }
 
     /// The values as they are written; whole numbers where all of them are.
@@ -118,8 +126,17 @@ mod tests {
 
     #[test]
     fn a_range_that_is_none_is_refused() {
-        for text in ["a=1..2", "a=1..2:1", "a=1..:3", "a=nan..2:3", "a=1..2:-3", "a"] {
-            assert!(text.parse::<Sweep>().is_err(), "{text}");
+        for (text, wrong) in [
+            ("a=1..2", "COUNT is missing, and must be a whole number from 2 to 100000"),
+            ("a=1..2:1", "COUNT is \"1\", and must be a whole number"),
+            ("a=1..2:-3", "COUNT is \"-3\", and must be a whole number"),
+            ("a=1..:3", "TO is missing, and must be a number"),
+            ("a=nan..2:3", "FROM is \"nan\", and must be a number"),
+            ("a=x..2:3", "FROM is \"x\", and must be a number"),
+            ("a", "write KEY=VALUE"),
+        ] {
+            let said = text.parse::<Sweep>().unwrap_err();
+            assert!(said.contains(wrong), "{text}: {said}");
         }
     }
 

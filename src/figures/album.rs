@@ -14,6 +14,7 @@ use crate::story;
 use super::animation::Film;
 use super::canvas::quantity;
 use super::curves::{Chart, Curve, DISTINCT_CURVES, Limit, Sign};
+use super::lanes::Lanes;
 use super::palette;
 use super::plan::Plan;
 use super::scene::Scene;
@@ -38,7 +39,7 @@ pub struct Album {
     residuals: Series,
     multipliers: Series,
     signs: Vec<Sign>,
-    tasks: Vec<(usize, usize)>,
+    lanes: Lanes,
 }
 
 /// A telling moment.
@@ -74,7 +75,7 @@ impl Album {
             residuals: Series::new(robots),
             multipliers: Series::new(robots),
             signs: Vec::new(),
-            tasks: Vec::new(),
+            lanes: Lanes::default(),
         }
     }
 
@@ -96,11 +97,7 @@ impl Album {
             moment: caption.moment,
             number: caption.number,
         }));
-        if let Some(task) = snapshot.task
-            && self.tasks.last().is_none_or(|(_, pursued)| *pursued != task)
-        {
-            self.tasks.push((snapshot.step, task));
-        }
+        self.lanes.observe(snapshot);
         if started || captions().next().is_some() {
             self.add_picture(snapshot, events, started);
         }
@@ -263,7 +260,7 @@ impl Album {
             curves: Vec::new(),
             limits: Vec::new(),
             signs: &self.signs,
-            tasks: &self.tasks,
+            lanes: &self.lanes,
             last_step: self.last.as_ref().map_or(0, |snapshot| snapshot.step),
             is_plain: self.plan.is_plain,
         }

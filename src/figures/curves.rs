@@ -4,6 +4,7 @@ use pleach_drawing::svg::node::element::Group;
 use pleach_drawing::{Axis, layer, named, polyline};
 
 use super::canvas::{Spot, headed, rectangle, stroke, text, text_width};
+use super::lanes::Lanes;
 use super::marks::draw_moment;
 use super::palette;
 use crate::story::Moment;
@@ -18,6 +19,8 @@ const HEIGHT: f64 = 520.0;
 const MARK_ROWS: usize = 3;
 /// From row to row of these marks.
 const MARK_ROW: f64 = 15.0;
+/// From the top of a lane to the foot of the names in it.
+const LANE_NAME: f64 = 14.0;
 /// Smallest distance of labels at the right end of curves.
 const LABEL_STEP: f64 = 11.0;
 /// Curves up to which each has a colour and a label of its own.
@@ -60,8 +63,8 @@ pub(super) struct Chart<'a> {
     pub curves: Vec<Curve>,
     pub limits: Vec<Limit>,
     pub signs: &'a [Sign],
-    /// From which period on each task is pursued.
-    pub tasks: &'a [(usize, usize)],
+    /// When each task is pursued.
+    pub lanes: &'a Lanes,
     pub last_step: usize,
     /// Without title.
     pub is_plain: bool,
@@ -82,23 +85,30 @@ impl Chart<'_> {
             .to_string()
     }
 
+    /// Lanes share the height of the plot. Tasks are named above it, or where there are several lanes each in its own.
     fn bands(&self, frame: &Frame) -> Group {
-        let mut group = layer("tasks");
-        for (index, &(start, task)) in self.tasks.iter().enumerate() {
-            let end = self.tasks.get(index + 1).map_or(self.last_step, |next| next.0);
-            let left = frame.x(start as f64);
-            let width = frame.x(end as f64) - left;
-            if index % 2 == 0 {
-                group = group.add(rectangle([left, CORNER[1]], [width, SIZE[1]], palette::BAND));
+        let lanes = self.lanes.count();
+        let height = SIZE[1] / lanes.max(1) as f64;
+        self.lanes.bands(self.last_step).into_iter().fold(layer("tasks"), |group, band| {
+            let [left, right] = [band.from, band.until].map(|step| frame.x(step as f64));
+            let top = CORNER[1] + band.lane as f64 * height;
+            let size = [right - left, height];
+            let group = match (band.lane + band.rank).is_multiple_of(2) {
+                true => group.add(rectangle([left, top], size, palette::BAND)),
+                false => group,
+            };
+            let words = format!("task {}", band.task);
+            if size[0] <= text_width(&words, palette::TEXT_SIZE) + 4.0 {
+                return group;
             }
-            let words = format!("task {task}");
-            if width > text_width(&words, palette::TEXT_SIZE) + 4.0 {
-                let place = [left + width / 2.0, CORNER[1] - MARK_ROWS as f64 * MARK_ROW - 8.0];
-                let label = text(words, place, palette::TEXT_SIZE, palette::TASK);
-                group = group.add(label.set("text-anchor", "middle").set("font-weight", "600"));
-            }
-        }
-        group
+            let line = match lanes {
+                1 => CORNER[1] - MARK_ROWS as f64 * MARK_ROW - 8.0,
+                _ => top + LANE_NAME,
+            };
+            let label =
+                text(words, [left + size[0] / 2.0, line], palette::TEXT_SIZE, palette::TASK);
+            group.add(label.set("text-anchor", "middle").set("font-weight", "600"))
+        })
     }
 
     /// Lines at telling moments, their marks in rows above the plot so that none covers another;

@@ -22,6 +22,7 @@ mod animation;
 mod canvas;
 mod curves;
 mod labels;
+mod lanes;
 mod legend;
 mod marks;
 pub(crate) mod palette;

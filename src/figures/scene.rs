@@ -196,7 +196,7 @@ impl Picture<'_> {
         drawn.into_iter().fold(layer("marks"), |group, (mark, node)| {
             let Some(spot) = self.node(node) else { return group };
             let tooltip = match mark {
-                Mark::AccessPoint => format!("access point {node}"),
+                Mark::AccessPoint => format!("access point {}", node - robots),
                 _ => format!("robot {node}: {}", mark.name()),
             };
             let disc = self.plan.disc_radius(&self.view).filter(|_| node < robots);
@@ -243,16 +243,14 @@ impl Picture<'_> {
                 _ => label,
             });
         }
+        let robots = snapshot.positions.len();
         for (node, spot) in spots.into_iter().enumerate() {
-            let robots = snapshot.positions.len();
             let plain = node < robots && Mark::of(snapshot, node) == Mark::Redundant;
             if plain && nodes > FULLY_LABELLED {
                 continue;
             }
-            let (words, colour) = match node < robots {
-                true => (node.to_string(), palette::INK),
-                false => (format!("AP {node}"), palette::ACCESS_POINT),
-            };
+            let words = label_of(node, robots);
+            let colour = if node < robots { palette::INK } else { palette::ACCESS_POINT };
             let place = places.place(&words, size, spot, reach(node));
             group = group.add(halo_text(words, place, size, colour));
         }
@@ -269,6 +267,18 @@ impl Picture<'_> {
             .filter_map(|(from, to)| Some((self.node(from)?, self.node(to)?)))
             .collect()
     }
+}
+
+/// What is written beside a node: robots and access points are each numbered from 0, in the order of the scenario.
+fn label_of(node: usize, robots: usize) -> String {
+    match node.checked_sub(robots) {
+        None => node.to_string(),
+        Some(access_point) => access_point_label(access_point),
+    }
+}
+
+fn access_point_label(number: usize) -> String {
+    format!("AP {number}")
 }
 
 /// Width of a link that carries T·R, on the paper.
@@ -325,8 +335,7 @@ fn halo_text(content: String, place: Spot, size: f64, colour: &str) -> Text {
 fn subtitle(snapshot: &Snapshot) -> String {
     let mut parts = vec![format!("t = {:.0} s", snapshot.time)];
     for Pursuit { access_point, phase, task, primary_team } in snapshot.pursuits() {
-        let node = access_point.map(|number| snapshot.positions.len() + number);
-        let of = node.map_or(String::new(), |node| format!("AP {node}: "));
+        let of = access_point.map_or(String::new(), |it| format!("{}: ", access_point_label(it)));
         parts.push(format!("{of}phase: {}", phase.name()));
         if let Some(task) = task {
             parts.push(format!("pursued: task {task}"));
@@ -345,7 +354,8 @@ fn subtitle(snapshot: &Snapshot) -> String {
         parts.push(format!("held: {}", held.join(", ")));
     }
     if !snapshot.absent.is_empty() {
-        let stopped: Vec<String> = snapshot.absent.iter().map(usize::to_string).collect();
+        let label = |&node: &usize| label_of(node, snapshot.positions.len());
+        let stopped: Vec<String> = snapshot.absent.iter().map(label).collect();
         parts.push(format!("stopped: {}", stopped.join(", ")));
     }
     parts.join("  ·  ")

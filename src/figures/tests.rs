@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use pleach_automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
+use pleach_automaton::network::record::{
+    End, FleetView, MissionEvent, Outcome, PostView, Route, Snapshot,
+};
 use pleach_automaton::network::scenario::{Scenario, ValidScenario};
 use pleach_discrete::network::{Phase, Role};
 use quick_xml::Reader;
@@ -244,6 +246,50 @@ fn an_album_tells_its_mission_in_order_and_to_the_byte() {
     if std::env::var_os("PLEACH_KEEP_FIGURES").is_none() {
         std::fs::remove_dir_all(&first).expect("removable");
     }
+}
+
+/// Fleet 0 pursues tasks 0 and 2, with a pause between them, and fleet 1 task 1.
+#[test]
+fn curves_name_the_tasks_of_every_fleet_each_in_its_lane() {
+    let mut album = empty_album(&study_one());
+    for step in 0..=400 {
+        let first = if step < 150 { Some(0) } else { (step >= 250).then_some(2) };
+        let fleet = |access_point: usize, task: Option<usize>| FleetView {
+            access_point,
+            phase: Phase::Advance,
+            task,
+            active_team: Vec::new(),
+            primary_team: Vec::new(),
+            path: Vec::new(),
+            ended: None,
+        };
+        let fleets = vec![fleet(0, first), fleet(1, (step >= 100).then_some(1))];
+        album.observe(&Snapshot { fleets, ..moment(step, 0.0) }, &[]).expect("kept");
+    }
+    let folder = folder("lanes");
+    album.write(&folder, &end()).expect("written");
+    let chart = std::fs::read_to_string(folder.join("residuals.svg")).expect("readable");
+    let (from, until) = (chart.find("\"tasks\"").unwrap(), chart.find("\"axes\"").unwrap());
+    let bands = &chart[from..until];
+    let named = |task: usize| -> [f64; 2] {
+        let text = &bands[..bands.find(&format!("\ntask {task}\n")).expect("it is named")];
+        let text = &text[text.rfind("<text").expect("in a text")..];
+        ["x=\"", "y=\""].map(|name| {
+            let value = &text[text.find(name).expect("it has a place") + name.len()..];
+            value[..value.find('"').expect("it ends")].parse().expect("a number")
+        })
+    };
+    let places = [0, 1, 2].map(named);
+    // The plot is 810 wide and 300 high, with its upper left corner at (74, 132).
+    let middle = |from: f64, until: f64| 74.0 + 810.0 * (from + until) / 2.0 / 400.0;
+    let middles = [middle(0.0, 150.0), middle(100.0, 400.0), middle(250.0, 400.0)];
+    for (task, (place, middle)) in places.iter().zip(middles).enumerate() {
+        assert!((place[0] - middle).abs() < 0.1, "task {task} is named at {place:?}");
+        let lane = 132.0 + 150.0 * [0.0, 1.0, 0.0][task];
+        assert!((lane..lane + 150.0).contains(&place[1]), "task {task} is named at {place:?}");
+    }
+    assert_eq!(bands.matches("<rect").count(), 1, "lanes alternate, the second against the first");
+    std::fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]

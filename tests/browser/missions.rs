@@ -450,7 +450,7 @@ fn a_mission_of_two_teams_tells_of_both() {
         let rows = facts.as_array().unwrap().iter().filter(|row| row[0] == name);
         rows.map(|row| row[1].as_str().unwrap().to_owned()).collect()
     };
-    assert_eq!(told("access point"), ["AP 12", "AP 13"]);
+    assert_eq!(told("access point"), ["AP 0", "AP 1"]);
     let leaders: Vec<usize> =
         snapshot.pursuits().iter().filter_map(|it| it.primary_team.last().copied()).collect();
     assert_eq!(told("leader"), leaders.iter().map(|it| format!("robot {it}")).collect::<Vec<_>>());
@@ -458,5 +458,13 @@ fn a_mission_of_two_teams_tells_of_both() {
     assert_eq!(told("task pursued"), tasks.collect::<Vec<_>>());
     let ways = page.value("pleach.mission.value('geodesic', 80).map(([leader]) => leader)");
     assert_eq!(ways, serde_json::json!(leaders));
+    // The tasks of a team stand side by side, those of the other team below them.
+    let bands = page.value(
+        "[...document.querySelectorAll('.line .band')].map(band => [band.textContent, \
+           band.offsetTop / band.offsetHeight])",
+    );
+    let lanes = [("task 0", 0), ("task 2", 0), ("task 1", 1), ("task 3", 1)];
+    assert_eq!(bands, serde_json::json!(lanes));
+    page.photograph("two-teams");
     assert_content(&page);
 }

@@ -105,7 +105,7 @@ impl Snapshot {
         reports: &[RobotReport],
         absent: Vec<NodeId>,
     ) -> Self {
-        let overview = Overview { robots: reports };
+        let overview = Overview { robots: reports, absent: &absent };
         Snapshot {
             step,
             time: step as f64 * period,
@@ -121,7 +121,7 @@ impl Snapshot {
             routes: overview.routes(),
             tree: overview.tree(),
             task: overview.newest().and_then(|robot| robot.task),
-            serviced: overview.serviced(&absent),
+            serviced: overview.serviced(),
             closed: overview.closed(),
             posts: overview.posts(),
             robots: reports.iter().map(RobotSnapshot::from).collect(),
@@ -160,10 +160,14 @@ pub fn complete_events(events: &mut [MissionEvent], primary_team: &[NodeId]) {
 impl<M, N: RobotNode> Network<M, N> {
     /// The observers' view of this instant, just before the robots move.
     pub fn snapshot(&self) -> Snapshot {
-        let nodes = self.nodes.nodes().iter().take(self.site.nodes());
-        let absent = nodes.enumerate().filter(|(_, node)| !node.is_running()).map(|(id, _)| id);
         let period = self.site.settings.period;
-        Snapshot::of_reports(self.step, period, &self.reports(), absent.collect())
+        Snapshot::of_reports(self.step, period, &self.reports(), self.absent())
+    }
+
+    /// The robots and access points that do not run.
+    fn absent(&self) -> Vec<NodeId> {
+        let nodes = self.nodes.nodes().iter().take(self.site.nodes()).enumerate();
+        nodes.filter(|(_, node)| !node.is_running()).map(|(id, _)| id).collect()
     }
 
     /// What observers need to know of each robot, by number.
@@ -184,18 +188,35 @@ impl<M, N: RobotNode> Network<M, N> {
         events
     }
 
-    /// The primary team 𝒫 from p₁ to the leader, or the leader alone before it is released.
+    /// The primary team 𝒫 from p₁ to the leader, or the leader alone before it is released. Robots that do not run are
+    /// of no team.
     pub fn primary_team(&self) -> Vec<NodeId> {
-        Overview { robots: &self.reports() }.primary_team()
+        Overview { robots: &self.reports(), absent: &self.absent() }.primary_team()
     }
 }
 
 /// All robots side by side, as only observers see them.
 struct Overview<'a> {
     robots: &'a [RobotReport],
+    /// The nodes that do not run or are not heard, ascending: what their robots did last tells nothing of the mission.
+    absent: &'a [NodeId],
 }
 
-impl Overview<'_> {
+impl<'a> Overview<'a> {
+    fn runs(&self, robot: NodeId) -> bool {
+        self.absent.binary_search(&robot).is_err()
+    }
+
+    /// The robots that run, by number.
+    fn running(&self) -> impl Iterator<Item = (NodeId, &'a RobotReport)> {
+        self.robots.iter().enumerate().filter(|(id, _)| self.runs(*id))
+    }
+
+    /// The robots that have stopped, or are not heard.
+    fn stopped(&self) -> impl Iterator<Item = (NodeId, &'a RobotReport)> {
+        self.robots.iter().enumerate().filter(|(id, _)| !self.runs(*id))
+    }
+
     /// The active team, and the robots that settle on their posts.
     fn active(&self) -> Vec<NodeId> {
         let team = self.active_team();
@@ -204,32 +225,34 @@ impl Overview<'_> {
             .collect()
     }
 
-    /// Where the mission stands for the robot that knows the newest notice.
+    /// Where the mission stands for the robot that runs and knows the newest notice.
     fn phase(&self) -> Phase {
         self.newest().map_or(Phase::Idle, |robot| robot.phase)
     }
 
-    fn newest(&self) -> Option<&RobotReport> {
-        self.robots.iter().max_by_key(|robot| (robot.notice, robot.subgroups_done))
+    fn newest(&self) -> Option<&'a RobotReport> {
+        let robots = self.running().map(|(_, robot)| robot);
+        robots.max_by_key(|robot| (robot.notice, robot.subgroups_done))
     }
 
     fn primary_team(&self) -> Vec<NodeId> {
         let member =
             |robot: &RobotReport| robot.duty.post().filter(|post| post.is_primary()).copied();
-        let Some(leader) = self.robots.iter().position(|robot| robot.duty.leads()) else {
+        let Some((leader, robot)) = self.running().find(|(_, robot)| robot.duty.leads()) else {
             return Vec::new();
         };
         let mut team = vec![leader];
-        let mut ahead = member(&self.robots[leader]);
+        let mut ahead = member(robot);
         while let Some(post) = ahead {
             let follows = PostKind::Primary { follows: Some(post.id) };
-            let next = (0..self.robots.len()).find(|&id| {
-                !team.contains(&id)
-                    && member(&self.robots[id]).is_some_and(|other| other.kind == follows)
+            // One that has stopped may hold the place of a robot that has taken it over.
+            let next = self.running().chain(self.stopped()).find(|(id, robot)| {
+                !team.contains(id) && member(robot).is_some_and(|other| other.kind == follows)
             });
-            team.extend(next);
-            ahead = next.and_then(|id| member(&self.robots[id]));
+            team.extend(next.map(|(id, _)| id));
+            ahead = next.and_then(|(_, robot)| member(robot));
         }
+        team.retain(|&id| self.runs(id));
         team.reverse();
         team
     }
@@ -255,7 +278,7 @@ impl Overview<'_> {
     /// The places on Σ with their robots, ascending.
     fn places(&self) -> Vec<(usize, NodeId)> {
         let place = |(id, robot): (NodeId, &RobotReport)| Some((robot.duty.place()?, id));
-        let mut places: Vec<_> = self.robots.iter().enumerate().filter_map(place).collect();
+        let mut places: Vec<_> = self.running().filter_map(place).collect();
         places.sort_unstable();
         places
     }
@@ -279,10 +302,9 @@ impl Overview<'_> {
     }
 
     /// The robot of each task. One that has stopped may have had the task of another that has taken it over.
-    fn serviced(&self, absent: &[NodeId]) -> Vec<(usize, NodeId)> {
+    fn serviced(&self) -> Vec<(usize, NodeId)> {
         let task = |(id, robot): (NodeId, &RobotReport)| Some((robot.duty.post()?.task?, id));
-        let robots = self.robots.iter().enumerate().filter(|(id, _)| !absent.contains(id));
-        let mut serviced: Vec<_> = robots.filter_map(task).collect();
+        let mut serviced: Vec<_> = self.running().filter_map(task).collect();
         serviced.sort_unstable();
         serviced.dedup_by_key(|(task, _)| *task);
         serviced
@@ -318,5 +340,80 @@ impl Overview<'_> {
                 })
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pleach_discrete::network::{Post, PostId};
+
+    use super::super::duty::{Following, Held, Leading, Station};
+    use super::*;
+
+    /// A member of a primary team on a post, one that leads or one that follows.
+    fn member(post: u32, follows: Option<u32>, notice: u32, phase: Phase) -> RobotReport {
+        let kind = PostKind::Primary { follows: follows.map(PostId) };
+        let post = Post { kind, ..Post::redundant(PostId(post)) };
+        let held = Held { station: Station { post, reference: Point::origin() }, left: None };
+        RobotReport {
+            position: Point::origin(),
+            duty: match follows {
+                None => Duty::Leading(Leading(held)),
+                Some(_) => Duty::Following(Following(held)),
+            },
+            exchange: ExchangeStage::Free,
+            phase,
+            notice: NoticeId::new(notice, 0),
+            task: Some(0),
+            closed: Arc::default(),
+            subgroups_done: 0,
+            active_subgroup: None,
+            is_active: true,
+            residual: 0.0,
+            multiplier: 0.0,
+            routes: Vec::new(),
+            tree_parent: None,
+            target: None,
+            sent: 0,
+            heard: 0,
+        }
+    }
+
+    fn seen(reports: &[RobotReport], absent: &[NodeId]) -> Snapshot {
+        Snapshot::of_reports(7, 1.0, reports, absent.to_vec())
+    }
+
+    /// Robot 0 has stopped while it led; robot 2 is elected in its place, and robot 1 follows it.
+    #[test]
+    fn a_robot_that_has_stopped_leads_no_team() {
+        let stopped = member(30, None, 2, Phase::Advance);
+        let elected = member(40, None, 5, Phase::Advance);
+        let reports = [stopped, member(41, Some(40), 5, Phase::Advance), elected];
+        assert_eq!(seen(&reports, &[0]).primary_team, [1, 2]);
+        assert!(seen(&reports[..1], &[0]).primary_team.is_empty());
+        let overview = Overview { robots: &reports[..1], absent: &[0] };
+        assert!(overview.primary_team().is_empty(), "nor do events name it");
+        assert_eq!(Overview { robots: &reports, absent: &[] }.primary_team(), [0], "it runs");
+    }
+
+    /// Robot 1 has stopped: those behind it are of the team all the same. Where robot 3 has taken its place, it goes by
+    /// that one.
+    #[test]
+    fn a_team_is_seen_across_a_member_that_has_stopped() {
+        let at = |post, follows| member(post, follows, 2, Phase::Advance);
+        let reports = [at(40, None), at(41, Some(40)), at(42, Some(41)), at(43, Some(40))];
+        assert_eq!(seen(&reports[..3], &[1]).primary_team, [2, 0]);
+        assert_eq!(seen(&reports, &[1]).primary_team, [3, 0]);
+    }
+
+    /// Robot 0 knew the newest notice when it stopped.
+    #[test]
+    fn the_phase_is_that_of_a_robot_that_runs() {
+        let reports =
+            [member(30, None, 9, Phase::PathAgreement), member(40, None, 5, Phase::Advance)];
+        let (all, without) = (seen(&reports, &[]), seen(&reports, &[0]));
+        assert_eq!((all.phase, without.phase), (Phase::PathAgreement, Phase::Advance));
+        assert_eq!(without.active_team, [1]);
+        assert_eq!(seen(&reports[..1], &[0]).phase, Phase::Idle);
     }
 }

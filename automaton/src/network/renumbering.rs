@@ -93,6 +93,15 @@ impl MissionEvent {
         Some(event)
     }
 
+    /// The nodes and the tasks that the event names.
+    #[must_use]
+    pub fn identities(&self) -> (Vec<usize>, Vec<usize>) {
+        let mut event = self.clone();
+        let Named { nodes, tasks } = event.named();
+        let numbers = |all: Vec<&mut usize>| all.into_iter().map(|number| *number).collect();
+        (numbers(nodes), numbers(tasks))
+    }
+
     fn named(&mut self) -> Named<'_> {
         match self {
             MissionEvent::TaskAnnounced { task }

@@ -11,7 +11,7 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_discrete::network::{Attendance, IdSet, NodeId};
 use serde::{Deserialize, Serialize};
 
-use super::wire;
+use super::{phrase, wire};
 
 /// A roll.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -169,7 +169,11 @@ impl Roll {
 
 /// Why a mission goes on, or ends, without these robots.
 pub(super) fn why_absent(robots: &[NodeId]) -> String {
-    format!("robots {robots:?} have stopped, or no access point hears of them")
+    let them = if robots.len() < 2 { "it" } else { "them" };
+    format!(
+        "{} stopped, or no access point hears of {them}",
+        phrase::robots(robots, ["has", "have"])
+    )
 }
 
 #[cfg(test)]

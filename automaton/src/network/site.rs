@@ -10,6 +10,7 @@ use pleach_continuous::network::{LinkReliability, WithMargin};
 use pleach_discrete::network::NodeId;
 
 use super::Link;
+use super::access_point::PATIENCE;
 use super::automata::Automata;
 use super::renumbering::Renumbering;
 use super::robot::ROUNDS_TO_BE_HEARD;
@@ -312,6 +313,12 @@ impl Site {
     /// messages being lost. Beacons that stay the same carry it over three links in a period.
     pub fn roll_validity(&self) -> u32 {
         ROLL_MARGIN + 2 * self.nodes().div_ceil(ROUNDS_TO_BE_HEARD) as u32
+    }
+
+    /// Control periods for which an access point waits to hear again of a task that has been serviced: until it would
+    /// miss a robot, and until every robot goes by that.
+    pub fn patience_with_tasks(&self) -> u32 {
+        PATIENCE + self.roll_validity()
     }
 
     /// For how many rounds news is under way, without losses, between nodes of trees that are no deeper than

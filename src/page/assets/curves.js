@@ -82,11 +82,12 @@ function drawCursor(context, x, top, bottom) {
 
 /**
  * A panel with curves. A curve has a `name`, a `colour`, its `points()`, its value `at` an instant,
- * and `number`: what is selected when it is. Limits are dashed lines.
+ * and `number`: what is selected when it is. Limits are dashed lines. `lanes` share the height of the panel;
+ * stretches are named above it, or where there are several lanes each in its own.
  */
 class Chart {
-  constructor(parent, player, selection, { title, note, curves, limits = [], bands = [], instants = "", isTight = false }) {
-    Object.assign(this, { player, selection, curves, limits, bands, instants, isTight });
+  constructor(parent, player, selection, { title, note, curves, limits = [], lanes = [], instants = "", isTight = false }) {
+    Object.assign(this, { player, selection, curves, limits, lanes, instants, isTight });
     this.reading = element("span", { class: "reading" });
     this.plot = element("div", { class: "plot" });
     parent.append(element("figure", { class: "chart" },
@@ -143,15 +144,17 @@ class Chart {
 
   drawGrid(context, { x, y, head, foot, right }) {
     context.font = `11px ${colours.get("font")}`;
-    this.bands.forEach((band, index) => {
+    const height = (foot - head) / this.lanes.length;
+    this.lanes.forEach((bands, lane) => bands.forEach((band, index) => {
+      const top = head + lane * height, width = x(band.to) - x(band.from);
       context.fillStyle = colours.get("band");
-      if (index % 2 === 0) context.fillRect(x(band.from), head, x(band.to) - x(band.from), foot - head);
+      if ((lane + index) % 2 === 0) context.fillRect(x(band.from), top, width, height);
       context.fillStyle = colours.get("task");
       context.textAlign = "center";
-      if (context.measureText(band.name).width < x(band.to) - x(band.from)) {
-        context.fillText(band.name, (x(band.from) + x(band.to)) / 2, head - 6);
+      if (context.measureText(band.name).width < width) {
+        context.fillText(band.name, x(band.from) + width / 2, this.lanes.length === 1 ? head - 6 : top + 11);
       }
-    });
+    }));
     context.strokeStyle = colours.get("grid");
     context.fillStyle = colours.get("quiet");
     context.lineWidth = 1;

@@ -43,6 +43,12 @@ class Mission {
   /** Whether a node does not run, or is not heard. */
   isAbsent(node, step) { return this.count > 0 && this.value("absent", step).includes(node); }
 
+  /** What is written beside a node: access points are numbered from 0, as in the scenario. */
+  label(node) { return node < this.robots ? String(node) : `AP ${node - this.robots}`; }
+
+  /** The same where it does not stand beside it. */
+  nodeName(node) { return node < this.robots ? `robot ${node}` : this.label(node); }
+
   /** What is more telling comes first. */
   rank(node, step) { return this.markOf(node, step).rank; }
 
@@ -100,10 +106,12 @@ class Mission {
     return trails;
   }
 
-  /** The stretches in which each task is pursued. */
-  bands() {
-    return this.values.task.spans().filter(span => span.value !== null)
-      .map(span => ({ from: span.from, to: span.to, name: `task ${span.value}` }));
+  /** The stretches in which each task is pursued, in a lane for each team. */
+  lanes() {
+    const { fleets, task } = this.values;
+    const tasks = fleets ? fleets.at(0).map((_, fleet) => fleets.spans(0, all => all[fleet].task)) : [task.spans()];
+    return tasks.map(spans => spans.filter(span => span.value !== null)
+      .map(span => ({ from: span.from, to: span.to, name: `task ${span.value}` })));
   }
 }
 
@@ -187,7 +195,8 @@ class Facts {
     const into = mission.linksAt(step).filter(link => link.to === node);
     const arriving = into.reduce((sum, link) => sum + link.share * link.reliability, 0);
     const children = mission.value("tree", step).filter(([, parent]) => parent === node).map(([child]) => child);
-    return [`Access point ${node}`, [
+    return [`Access point ${node - mission.robots}`, [
+      ["node", String(node)],
       ["position", `(${written(x)}, ${written(y)})`],
       ["children", children.length ? children.join(", ") : "none"],
       ["receives ΣTᵢⱼRᵢⱼ", written(arriving, 4)],
@@ -240,7 +249,7 @@ class Facts {
     const range = mission.scenario.link.max_range;
     const near = places.flatMap(([px, py], other) =>
       other !== node && Math.hypot(px - x, py - y) < range ? [other] : []);
-    return near.length ? near.join(", ") : "none in range";
+    return near.length ? near.map(other => mission.label(other)).join(", ") : "none in range";
   }
 
   /** Fields of the trace with a value for each robot that this page has no words for. */
@@ -258,9 +267,6 @@ class Facts {
 const KNOWN_FIELDS = new Set(["role", "mark", "location", "exchange", "known_phase", "active", "tree", "task", "phase", "active_team", "primary_team",
   "path", "serviced", "post", "task_state", "geodesic", "absent", "fleets"]);
 
-Mission.prototype.nodeName = function (node) {
-  return node < this.robots ? `robot ${node}` : `AP ${node}`;
-};
 
 function chained(team) {
   return team.length ? team.join(" → ") : "none";
@@ -322,17 +328,17 @@ function showMission(data) {
   const clock = at => mission.period === 1 ? `k = ${Math.floor(at)}`
     : `k = ${Math.floor(at)} · t = ${written(at * mission.period, 4)} s`;
   const part = id => document.getElementById(id);
-  const bands = mission.count ? mission.bands() : [];
+  const lanes = mission.count ? mission.lanes() : [];
   const plan = new Plan(part("stage"), mission, player, selection);
   new Facts(part("facts"), mission, player, selection);
   layerPanel(part("layers"), mission, plan);
   new Transport(part("transport"), player, {
-    bands, clock, unit: speed => `${speed} periods/s`, isTelling: event => Boolean(event.moment) || event.event === "violated",
+    lanes, clock, unit: speed => `${speed} periods/s`, isTelling: event => Boolean(event.moment) || event.event === "violated",
     glyph: event => event.moment ? momentGlyph(moments.get(event.moment).strokes)
       : element("span", { class: "alarm" }, "!"),
   });
   new Story(part("story"), player, { clock, isTelling: event => event.telling, hasDetails: true });
-  if (mission.count) missionCharts(part("charts"), mission, player, selection, bands);
+  if (mission.count) missionCharts(part("charts"), mission, player, selection, lanes);
   return { mission, player, selection, plan };
 }
 
@@ -341,9 +347,9 @@ function stripColour(key) {
   return key === "redundant" ? "grid" : key;
 }
 
-function missionCharts(parent, mission, player, selection, bands) {
+function missionCharts(parent, mission, player, selection, lanes) {
   const { clearance, control = mission.scenario.control } = mission;
-  const common = { bands, instants: "k" };
+  const common = { lanes, instants: "k" };
   const robots = [...Array(mission.robots).keys()];
   const curves = name => robots.map(robot => {
     const series = mission.numbers[name].columns[robot];

@@ -341,7 +341,7 @@ class Plan {
     const order = spots.map((_, node) => node).sort((one, other) => mission.rank(one, step) - mission.rank(other, step));
     const nodes = order.map(node => ({
       key: node, spot: spots[node], colour: node < mission.robots ? "ink" : "access-point",
-      text: node < mission.robots ? String(node) : `AP ${node}`, reach: radius * 1.5,
+      text: mission.label(node), reach: radius * 1.5,
       mayGo: mission.markOf(node, step).key === "redundant" && node !== this.selection.shown,
     }));
     const tasks = mission.scenario.task.map(({ position }, number) => ({

@@ -114,13 +114,14 @@ class Choices {
     return this.values[this.table.at(column, step)];
   }
 
-  /** The stretches of steps with the same value. */
-  spans(column = 0) {
-    const { steps, values, count } = this.table.columns[column];
-    return Array.from(steps, (step, index) => ({
-      from: step,
-      to: index + 1 < steps.length ? steps[index + 1] : count - 1,
-      value: this.values[values[index]],
-    }));
+  /** The stretches of steps with the same value, or with the same part `of` it. */
+  spans(column = 0, of = value => value) {
+    const { steps, values, count } = this.table.columns[column], spans = [];
+    steps.forEach((from, index) => {
+      const to = index + 1 < steps.length ? steps[index + 1] : count - 1;
+      const value = of(this.values[values[index]]), last = spans.at(-1);
+      if (last && last.value === value) last.to = to; else spans.push({ from, to, value });
+    });
+    return spans;
   }
 }

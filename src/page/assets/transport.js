@@ -34,8 +34,8 @@ function icon(sign) {
 
 /** The buttons, the time line with its events, and the keys. */
 class Transport {
-  /** `bands`: stretches of the run `{from, to, name}`; `clock` tells the instant in words, `unit` a speed. */
-  constructor(parent, player, { bands = [], clock, unit, isTelling = () => true, glyph }) {
+  /** `lanes`: stretches of the run `{from, to, name}`, those side by side in lanes; `clock` tells the instant in words, `unit` a speed. */
+  constructor(parent, player, { lanes = [], clock, unit, isTelling = () => true, glyph }) {
     Object.assign(this, { player, clock, isTelling, hasGlyphs: Boolean(glyph) });
     const button = (sign, title, act) =>
       element("button", { type: "button", title, "aria-label": title, onclick: act }, icon(sign));
@@ -55,13 +55,13 @@ class Transport {
         button("on", "A step on (→)", () => player.step(1)),
         button("next", "Next event (↓)", () => player.jump(1, isTelling)),
         this.now, this.speed, help()),
-      this.timeLine(bands, glyph));
+      this.timeLine(lanes, glyph));
     player.onChange(() => this.show());
     document.addEventListener("keydown", event => this.press(event));
     this.show();
   }
 
-  timeLine(bands, glyph) {
+  timeLine(lanes, glyph) {
     const { player } = this;
     const share = at => `${(100 * at / Math.max(player.end, 1e-12)).toFixed(4)}%`;
     this.thumb = element("div", { class: "thumb" });
@@ -75,11 +75,11 @@ class Transport {
     }, glyph ? glyph(event) : null)).filter(Boolean);
     this.line = element("div", {
       id: "scrubber", class: "line", role: "slider", tabindex: "0", "aria-label": "Instant",
-      "aria-valuemin": "0", "aria-valuemax": player.end,
+      "aria-valuemin": "0", "aria-valuemax": player.end, style: `--lanes: ${Math.max(1, lanes.length)}`,
     },
-    ...bands.map(band => element("div", {
-      class: "band", style: `left: ${share(band.from)}; width: ${share(band.to - band.from)}`,
-    }, band.name)),
+    ...lanes.flatMap((bands, lane) => bands.map(band => element("div", {
+      class: "band", style: `--lane: ${lane}; left: ${share(band.from)}; width: ${share(band.to - band.from)}`,
+    }, band.name))),
     element("div", { class: "track" }, this.fill), ...marks, this.thumb);
     this.share = share;
     const seek = event => {

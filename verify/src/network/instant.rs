@@ -102,7 +102,10 @@ fn identity_fault(snapshot: &Snapshot, limits: &Limits) -> Option<String> {
     let posts = snapshot.posts.iter().map(|post| (post.task, post.holder));
     for (task, robot) in serviced.chain(posts) {
         if robot >= robots || task.is_some_and(|task| task >= tasks) {
-            return Some(format!("robot {robot} has task {task:?}, of {robots} and {tasks}"));
+            return Some(match task {
+                Some(task) => format!("robot {robot} has task {task}, of {robots} and {tasks}"),
+                None => format!("robot {robot} has a post, of {robots}"),
+            });
         }
     }
     None

@@ -94,7 +94,7 @@ impl AccessPoint {
     /// The [`account`](Self::account) of an access point where control periods count.
     pub fn account_in_time(&self) -> Vec<String> {
         let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
-        let patience = self.patience_with_tasks() + 1;
+        let patience = self.site.patience_with_tasks() + 1;
         let tasks: Vec<u32> =
             self.known_tasks.iter().map(|task| task.silence.min(patience)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful, &self.joiners);

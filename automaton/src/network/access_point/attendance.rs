@@ -280,7 +280,7 @@ impl AccessPoint {
     /// The first task that has been serviced, is not over, and has not been serviced for as long as it takes
     /// to give a robot up.
     pub(super) fn abandoned_task(&self) -> Option<usize> {
-        let patience = self.patience_with_tasks();
+        let patience = self.site.patience_with_tasks();
         let mut services = self.services();
         services.find(|(_, known)| known.silence > patience).map(|(task, _)| task)
     }
@@ -294,10 +294,6 @@ impl AccessPoint {
     fn services(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
         let known = self.known_tasks.iter().copied().enumerate();
         known.filter(|&(task, _)| !self.closed.contains(task))
-    }
-
-    pub(super) fn patience_with_tasks(&self) -> u32 {
-        PATIENCE + self.site.roll_validity()
     }
 
     fn absent(&self) -> Absent {

@@ -10,6 +10,7 @@ use crate::{Automaton, BuildError, Transfer};
 
 use super::super::beacon::{Announcement, Bulletin, Notice};
 use super::super::order::Errand;
+use super::super::phrase;
 use super::super::record::{MissionEvent, Outcome};
 use super::super::roll::why_absent;
 use super::super::service::{Announced, Done, Electing, Gathering, Over, Serving, UnderWay};
@@ -518,8 +519,8 @@ fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects)
     if !absent.is_empty() || !cut_off.is_empty() {
         let why = match absent.is_empty() {
             true => {
-                let cut_off = point.site.names_of(&cut_off);
-                format!("robots {cut_off:?} know no way to an access point any more")
+                let cut_off = phrase::robots(&point.site.names_of(&cut_off), ["knows", "know"]);
+                format!("{cut_off} no way to an access point any more")
             }
             false => why_absent(&point.site.names_of(&absent)),
         };
@@ -528,8 +529,8 @@ fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects)
     }
     if let Some(left) = point.access_points_left() {
         let reason = format!(
-            "no robot of the access points {left:?} can lead a team to task {name}, and those of the others \
-             find no recruit"
+            "no robot of {} can lead a team to task {name}, and those of the others find no recruit",
+            phrase::named("access point", &left)
         );
         return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
     }
@@ -544,9 +545,8 @@ fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) 
     let Announced { task, roster, .. } = place.announced.as_ref()?;
     let missing = point.site.names_of(&point.unanswering(roster));
     let name = point.site.name_of_task(*task);
-    let reason = format!(
-        "the election for task {name} cannot end: robots {missing:?} do not answer any more"
-    );
+    let missing = phrase::robots(&missing, ["does", "do"]);
+    let reason = format!("the election for task {name} cannot end: {missing} not answer any more");
     Some(end(point, effects, Outcome::Blocked, Some(*task), reason))
 }
 

@@ -444,7 +444,7 @@ fn a_mission_ends_when_a_robot_does_not_answer() {
     };
     let again = MissionEvent::TaskReannounced { task: 0, gone: vec![0, 1], joined: vec![] };
     assert_eq!(becomes_of(2), (vec![again], None));
-    let reason = "the election for task 0 cannot end: robots [0, 1] do not answer any more";
+    let reason = "the election for task 0 cannot end: robots 0 and 1 do not answer any more";
     assert_eq!(becomes_of(3), (vec![], Some(reason.to_owned())));
 }
 
@@ -482,7 +482,7 @@ fn no_task_is_out_of_reach_while_a_robot_looks_for_its_way() {
     assert_eq!(becomes_of(2, 3, true), (vec![again], None));
     assert!(becomes_of(3, 3, true).1.is_some(), "it has been asked often enough");
     let (events, reason) = becomes_of(0, 100_000, false);
-    let expected = "no robot is left that can go to task 0: robots [1] know no way to an access point \
+    let expected = "no robot is left that can go to task 0: robot 1 knows no way to an access point \
                     any more";
     assert_eq!((events, reason.as_deref()), (vec![], Some(expected)));
 }

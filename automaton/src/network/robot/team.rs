@@ -32,8 +32,6 @@ const BUNCHED: f64 = 2.6;
 const SLACK: f64 = 0.95;
 /// A robot that sends for this share of its time is at the limit of what its links carry.
 pub const SATURATED: f64 = 0.95;
-/// So is one that sends and has less than this share of the reserve η left as its residual.
-const SPENT: f64 = 0.1;
 
 /// The leader is within reach of its task, and services it.
 pub(super) fn announce_service(_: &Advance, robot: &Robot, effects: &mut Effects) -> Option<Idle> {
@@ -293,10 +291,10 @@ impl Robot {
         !bound && !self.is_saturated() && (self.leads() || !bunched())
     }
 
-    /// Whether the links of the robot carry no more, so that it stops where c_i ≥ −c_min would break: a
-    /// recruit makes them shorter.
+    /// Whether the links of the robot carry no more, so that it stops where h_i ≤ 1 would break: a recruit makes them
+    /// shorter. What is left of its reserve does not tell that. Moves leave flows as they are, and with them c_i; and
+    /// where messages are lost, flows in use lag behind the plan for some periods, and leave no reserve.
     fn is_saturated(&self) -> bool {
-        let (load, reserve) = (self.load(), self.site.settings.routing_reserve);
-        load >= SATURATED || load > 0.0 && self.residual < SPENT * reserve
+        self.load() >= SATURATED
     }
 }

@@ -7,6 +7,9 @@ use super::Dispute;
 use crate::network::limits::SLACK;
 use crate::network::property::Property;
 
+/// Where `fleets` have no place: each of several fleets is judged as a mission of its own.
+const ONE_TEAM: &str = "in the mission of one team";
+
 /// The time of a mission, and the places from which its robots start.
 #[derive(Clone, Debug)]
 pub(in crate::network) struct Clock {
@@ -25,17 +28,30 @@ impl Clock {
         }
     }
 
-    /// The record begins with k = 0, when robots are where the scenario has them, and t_k = k Δt.
+    /// The record begins with k = 0, when robots are where the scenario has them, t_k = k Δt, and there are at most
+    /// as many periods as the scenario allows.
     pub(super) fn check(&self, snapshot: &Snapshot, opens: bool) -> Result<(), Dispute> {
         let record = |sentence| Dispute::of(Property::Record, &[], sentence);
         if opens && snapshot.step != 0 {
             let sentence = format!("the record begins with step {}, not with 0", snapshot.step);
             return Err(record(sentence));
         }
+        if !snapshot.fleets.is_empty() {
+            return Err(record(format!("the step shows fleets {ONE_TEAM}")));
+        }
         let expected = snapshot.step as f64 * self.period;
         if (snapshot.time - expected).abs() > SLACK * self.period {
             let sentence = format!("the time is {} s, and k Δt is {expected} s", snapshot.time);
             return Err(record(sentence).measuring(snapshot.time, expected));
+        }
+        if snapshot.step >= self.max_steps {
+            let sentence = format!(
+                "the record goes on with step {}, and the last of max_steps = {} is {}",
+                snapshot.step,
+                self.max_steps,
+                self.max_steps - 1
+            );
+            return Err(record(sentence));
         }
         let mut pairs = self.starts.iter().zip(&snapshot.positions).enumerate();
         match pairs.find(|(_, (start, place))| **start != [place.x, place.y]) {
@@ -57,6 +73,9 @@ impl Clock {
         (serviced, tasks): (usize, usize),
     ) -> Option<String> {
         let Some(last) = last else { return Some("nothing is on record".to_owned()) };
+        if !end.fleets.is_empty() {
+            return Some(format!("the end tells of fleets {ONE_TEAM}"));
+        }
         match end.outcome {
             Outcome::Serviced if serviced < tasks => {
                 Some(format!("the outcome is “serviced”, and {serviced} of {tasks} tasks are"))

@@ -1,7 +1,7 @@
 //! Whether what observers conclude is what the events and the world give.
 
 use pleach_automaton::network::LONGEST_SETTLING;
-use pleach_automaton::network::record::{MissionEvent, Snapshot};
+use pleach_automaton::network::record::{MissionEvent, RobotSnapshot, Snapshot};
 use pleach_automaton::network::scenario::Strategy;
 use pleach_discrete::Location as _;
 use pleach_discrete::network::{Phase, Role};
@@ -10,9 +10,12 @@ use super::claims::is_part;
 use super::lately::Lately;
 use super::ledger::{Ledger, Stage};
 use super::walk::Walk;
-use super::{Dispute, Scene, claims, posts, states};
+use super::{Dispute, Scene, claims, posts, states, task_or_none};
 use crate::network::property::Property;
 
+/// Control periods after which the user has heard what all robots know: one until an access point has heard it of
+/// them, and one until that has answered the user.
+const NEWS_TO_USER: usize = 2;
 /// A robot this share of ρ from the place of its post has come to rest.
 const SETTLED: f64 = 0.02;
 /// A robot makes way within this many ρ of one that moves with the active team: the way that is
@@ -47,6 +50,8 @@ pub struct Conclusions {
     exchanging: Vec<(usize, usize)>,
     /// The step at which the robots first knew that the mission has ended.
     ended: Option<usize>,
+    /// The step since which all robots have known that, and none of them may move.
+    at_rest: Option<usize>,
 }
 
 impl Conclusions {
@@ -68,6 +73,7 @@ impl Conclusions {
             changed: Vec::new(),
             exchanging: Vec::new(),
             ended: None,
+            at_rest: None,
         }
     }
 
@@ -142,9 +148,24 @@ impl Conclusions {
         Err(Dispute::of(Property::Subgroups, robots, sentence))
     }
 
-    /// Whether the mission should have ended: the robots have known that it has for long, and have had the time to settle.
-    pub fn overdue(&self, step: usize) -> bool {
-        self.ended.is_some_and(|ended| ended + self.patience + LONGEST_SETTLING < step)
+    /// Whether the mission should have ended before this step: the robots have known that it has for long, and have
+    /// had the time to settle, if they do.
+    pub fn overdue(&self, step: usize, settles: bool) -> bool {
+        let is_past =
+            |since: Option<usize>, wait: usize| since.is_some_and(|since| since + wait < step);
+        let settling = if settles { LONGEST_SETTLING } else { 0 };
+        is_past(self.ended, self.patience + LONGEST_SETTLING)
+            || is_past(self.at_rest, NEWS_TO_USER + settling)
+    }
+
+    /// Takes note of who knows in this step that the mission has ended.
+    fn note_rest(&mut self, snapshot: &Snapshot) {
+        let knows = |robot: &RobotSnapshot| robot.phase == Phase::Ended;
+        let all_know = !snapshot.robots.is_empty() && snapshot.robots.iter().all(knows);
+        match all_know && snapshot.active.is_empty() {
+            true => self.at_rest = self.at_rest.or(Some(snapshot.step)),
+            false => self.at_rest = None,
+        }
     }
 
     /// Whether everybody may have heard of the last event.
@@ -168,6 +189,7 @@ impl Conclusions {
         // Robots that have given up hold no team and no place of Σ any more.
         if snapshot.phase == Phase::Ended {
             self.ended.get_or_insert(snapshot.step);
+            self.note_rest(snapshot);
             return Ok(());
         }
         if self.ended.is_some() {
@@ -213,9 +235,9 @@ impl Conclusions {
         let Scene { snapshot, limits, .. } = scene;
         if !self.task.values().any(|task| *task == snapshot.task) {
             let sentence = format!(
-                "the task is reported as {:?}, and the events make it {:?}",
-                snapshot.task,
-                self.task.current()
+                "{} is reported to be pursued, and {} is by the events",
+                task_or_none(snapshot.task),
+                task_or_none(*self.task.current())
             );
             return Err(Dispute::of(Property::Stage, &[], sentence));
         }
@@ -236,9 +258,9 @@ impl Conclusions {
         }
         if !is_known && !is_ahead && !is_settling {
             let sentence = format!(
-                "the phase is reported as “{}”, and the mission is {:?}",
+                "the phase is reported as “{}”, and by the events {}",
                 snapshot.phase.name(),
-                self.stage.current()
+                self.stage.current().clause()
             );
             return Err(Dispute::of(Property::Stage, &[], sentence));
         }

@@ -22,7 +22,7 @@ use crate::network::violation::{Instant, Violation};
 /// The record is divided into that of each fleet, which is judged as a mission of its own, and nothing may be left
 /// over. Robots of different fleets keep their distance like any others.
 #[derive(Clone, Debug)]
-pub struct Fleets<'a> {
+pub struct JudgeOfFleets<'a> {
     limits: Limits,
     judges: Vec<FleetJudge<'a>>,
     previous: Option<Snapshot>,
@@ -38,7 +38,7 @@ struct FleetJudge<'a> {
     over: Option<(usize, Referee<'a>)>,
 }
 
-impl<'a> Fleets<'a> {
+impl<'a> JudgeOfFleets<'a> {
     /// The judge of the fleets of a scenario, in which these faults occur, that has seen nothing yet; `role_table`
     /// tells whether a role may turn into another in one transition.
     pub fn new(
@@ -53,7 +53,7 @@ impl<'a> Fleets<'a> {
             let referee = Referee::of_one(fleet.scenario(), faults, may_follow);
             FleetJudge { fleet: fleet.clone(), referee, over: None }
         };
-        Fleets {
+        JudgeOfFleets {
             limits: Limits::of(scenario),
             judges: scenario.fleets().iter().map(judge).collect(),
             previous: None,
@@ -118,7 +118,10 @@ impl<'a> Fleets<'a> {
             match own.collect::<Vec<_>>().as_slice() {
                 [(at, event)] => of_fleets[*at].push(event.clone()),
                 _ => {
-                    let sentence = format!("the event {event:?} is not of one fleet");
+                    let (nodes, tasks) = event.identities();
+                    let sentence = format!(
+                        "an event that names nodes {nodes:?} and tasks {tasks:?} is not of one fleet"
+                    );
                     return Err(Dispute::of(Property::Record, &[], sentence));
                 }
             }
@@ -195,10 +198,16 @@ impl<'a> FleetJudge<'a> {
             }
             (Some((before, _)), Some(period)) if period == *before => Ok(()),
             _ => {
+                let since = |period: Option<usize>| match period {
+                    Some(period) => format!("over since k = {period}"),
+                    None => "under way".to_owned(),
+                };
+                let before = self.over.as_ref().map(|(period, _)| *period);
                 let sentence = format!(
-                    "the mission of access point {} is told to be over since {ended:?}, and was since {:?}",
+                    "the mission of access point {} is told to be {}, and was {} in the step before",
                     self.access_point(),
-                    self.over.as_ref().map(|(period, _)| period)
+                    since(ended),
+                    since(before)
                 );
                 Err(Dispute::of(Property::Record, &[], sentence))
             }
@@ -258,11 +267,16 @@ impl<'a> FleetJudge<'a> {
         nodes.iter().filter_map(|&node| self.fleet.outward().node(node)).collect()
     }
 
-    /// A violation of its mission as one of the whole.
+    /// A violation of its mission as one of the whole. The sentence counts robots and tasks as the judge of the fleet
+    /// does, and says which they are in the scenario.
     fn in_whole(&self, violation: Violation) -> Violation {
+        let tasks = 0..self.fleet.scenario().task.len();
+        let tasks: Vec<usize> = tasks.filter_map(|task| self.fleet.outward().task(task)).collect();
         let sentence = format!(
-            "among the robots of access point {}, which are numbered from 0 here: {}",
+            "in the mission of access point {}, whose robots {:?} and tasks {tasks:?} are here numbered from 0 in \
+             this order: {}",
             self.access_point(),
+            self.fleet.robots(),
             violation.sentence
         );
         Violation { robots: self.numbers(&violation.robots), sentence, ..violation }

@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use pleach_automaton::network::record::MissionEvent;
 use pleach_discrete::network::Role;
 
-use super::Dispute;
 use super::walk::Walk;
+use super::{Dispute, task_or_none};
 use crate::network::property::Property;
 use crate::network::team;
 
@@ -63,6 +63,19 @@ pub enum Stage {
     Calling,
     /// The subgroups of Σ move, one after the other.
     Shifting,
+}
+
+impl Stage {
+    /// What the mission is at, as a clause.
+    pub(super) const fn clause(self) -> &'static str {
+        match self {
+            Stage::Idle => "no task is pursued",
+            Stage::Electing => "a leader is being elected",
+            Stage::Advancing => "the primary team advances",
+            Stage::Calling => "a recruit is called for",
+            Stage::Shifting => "subgroups move along the path",
+        }
+    }
 }
 
 impl Ledger {
@@ -263,9 +276,9 @@ impl Ledger {
         let has_cause = !gone.is_empty() || !joined.is_empty();
         if is_over || !is_pursued || !has_cause || gone.iter().any(|robot| joined.contains(robot)) {
             let sentence = format!(
-                "task {task} is announced again without robots {gone:?} and to robots {joined:?}, while task {:?} \
-                 is pursued and {} tasks have been announced",
-                self.task(),
+                "task {task} is announced again without robots {gone:?} and to robots {joined:?}, while {} is \
+                 pursued and {} tasks have been announced",
+                task_or_none(self.task()),
                 self.announced
             );
             return dispute(gone, sentence);

@@ -14,7 +14,8 @@
 //!
 //! Where messages are lost and nodes stop, robots need not know the same, and observers cannot
 //! conclude what they can without faults. Such a record is held against what no fault may break
-//! ([`Safety`]). The [`Referee`] is the one or the other, or has one of them for each of several [`Fleets`].
+//! ([`Safety`]). The [`Referee`] is the one or the other, or has one of them for each of several fleets
+//! ([`JudgeOfFleets`]).
 
 mod account;
 mod certificate;
@@ -50,7 +51,7 @@ use super::property::Property;
 use super::violation::{Instant, Violation};
 pub(super) use clock::Clock;
 use conclusions::Conclusions;
-pub use fleets::Fleets;
+pub use fleets::JudgeOfFleets;
 use ground::Ground;
 pub use ledger::{Ledger, Stage};
 use places::Places;
@@ -73,6 +74,11 @@ pub struct Dispute {
     pub measured: (f64, f64),
     /// What is wrong, as a clause without a full stop.
     pub sentence: String,
+}
+
+/// "task 3", or "no task".
+fn task_or_none(task: Option<usize>) -> String {
+    task.map_or_else(|| "no task".to_owned(), |task| format!("task {task}"))
 }
 
 impl Dispute {
@@ -175,10 +181,8 @@ impl<'a> Judge<'a> {
         self.monitor.observe(snapshot)?;
         let opens = self.previous.is_none();
         self.clock.check(snapshot, opens).map_err(|dispute| dispute.at(now))?;
-        if !snapshot.absent.is_empty() {
-            let sentence = format!("nodes {:?} are absent where nothing fails", snapshot.absent);
-            return Err(Dispute::of(Property::Record, &[], sentence).at(now));
-        }
+        safety::all_are_present(snapshot, "where nothing fails")
+            .map_err(|dispute| dispute.at(now))?;
         for event in events {
             let limits = self.monitor.limits();
             claims::names_exist(event, limits).map_err(|dispute| dispute.at(now))?;
@@ -365,16 +369,16 @@ impl<'a> Judge<'a> {
         let complaint = complaint.or_else(|| self.terms.contradiction(end.outcome));
         let is_done = done == tasks && self.terms.contradiction(Outcome::Serviced).is_none();
         let complaint = complaint.or_else(|| match end.outcome {
-            _ if self.conclusions.overdue(now.step) => {
-                Some("the robots had given up, and the mission went on".to_owned())
+            _ if self.conclusions.overdue(now.step, self.settles(end.outcome)) => {
+                Some("the robots knew that the mission had ended, and it went on".to_owned())
             }
             Outcome::InsufficientRobots | Outcome::UnreachableTask | Outcome::Blocked
                 if end.task.is_some() && end.task != self.ledger.task() =>
             {
                 Some(format!(
-                    "the mission ends over task {:?}, and {:?} is pursued",
-                    end.task,
-                    self.ledger.task()
+                    "the mission ends over {}, and {} is pursued",
+                    task_or_none(end.task),
+                    task_or_none(self.ledger.task())
                 ))
             }
             Outcome::Serviced | Outcome::StepLimit => None,
@@ -390,6 +394,12 @@ impl<'a> Judge<'a> {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
         }
+    }
+
+    /// Whether robots may change their places in the tree before a mission with this outcome is over.
+    fn settles(&self, outcome: Outcome) -> bool {
+        let strategy = self.monitor.limits().settings().strategy;
+        strategy == Strategy::Eager && !outcome.is_given_up()
     }
 
     /// An observer's account of why the mission ended: what its end should come with.

@@ -3,8 +3,8 @@
 use pleach_automaton::network::record::{PostView, Snapshot};
 use pleach_discrete::network::Role;
 
-use super::Dispute;
 use super::ledger::Ledger;
+use super::{Dispute, task_or_none};
 use crate::network::property::Property;
 
 /// A robot that answers for a task is in the tree, and a leaf or the leader that is not yet
@@ -41,7 +41,8 @@ pub fn stay(
                 format!("is now at ({:.6}, {:.6})", now.reference.x, now.reference.y)
             }
             Some(now) if now.task != before.task => {
-                format!("was for task {:?} and is now for {:?}", before.task, now.task)
+                let [was, is] = [before.task, now.task].map(task_or_none);
+                format!("was for {was} and is now for {is}")
             }
             Some(_) => continue,
         };
@@ -71,8 +72,9 @@ pub fn tasks_agree(snapshot: &Snapshot) -> Result<(), Dispute> {
         };
         if !agrees {
             let sentence = format!(
-                "the post of robot {robot} is for task {:?}, and the robot answers for {held:?}",
-                post.task
+                "the post of robot {robot} is for {}, and the robot answers for {}",
+                task_or_none(post.task),
+                task_or_none(held)
             );
             return Err(Dispute::of(Property::Posts, &[robot], sentence));
         }
@@ -141,8 +143,9 @@ pub fn are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
         let (robot, task) = (post.holder, answers_for(post.holder));
         if post.task != task {
             let sentence = format!(
-                "the post of robot {robot} is for task {:?}, and the robot answers for {task:?}",
-                post.task
+                "the post of robot {robot} is for {}, and the robot answers for {}",
+                task_or_none(post.task),
+                task_or_none(task)
             );
             return Err(Dispute::of(Property::Posts, &[robot], sentence));
         }

@@ -6,7 +6,7 @@ use pleach_automaton::network::scenario::ValidScenario;
 use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
-use super::{Fleets, Judge, Safety};
+use super::{Judge, JudgeOfFleets, Safety};
 use crate::network::extremes::Extremes;
 use crate::network::violation::Violation;
 
@@ -19,7 +19,7 @@ pub enum Referee<'a> {
     /// Of a mission with faults.
     Safety(Box<Safety>),
     /// Of the missions of several fleets.
-    Fleets(Box<Fleets<'a>>),
+    Fleets(Box<JudgeOfFleets<'a>>),
 }
 
 impl<'a> Referee<'a> {
@@ -32,7 +32,7 @@ impl<'a> Referee<'a> {
     ) -> Self {
         match scenario.fleets().is_empty() {
             true => Referee::of_one(scenario, faults, role_table),
-            false => Referee::Fleets(Box::new(Fleets::new(scenario, faults, role_table))),
+            false => Referee::Fleets(Box::new(JudgeOfFleets::new(scenario, faults, role_table))),
         }
     }
 

@@ -28,6 +28,7 @@ use crate::network::{instant, link};
 #[derive(Clone, Debug)]
 pub struct Safety {
     limits: Limits,
+    faults: Faults,
     clock: Clock,
     previous: Option<Snapshot>,
     claims: TaskClaims,
@@ -39,6 +40,7 @@ impl Safety {
     pub fn new(scenario: &ValidScenario, faults: Faults) -> Self {
         Safety {
             limits: Limits::of(scenario),
+            faults,
             clock: Clock::of(scenario),
             previous: None,
             claims: TaskClaims::new(scenario, faults),
@@ -60,6 +62,9 @@ impl Safety {
         let told = |dispute: Dispute| dispute.at(now);
         instant::record(snapshot, &self.limits)?;
         self.clock.check(snapshot, self.previous.is_none()).map_err(told)?;
+        if !self.faults.nodes {
+            all_are_present(snapshot, "where messages fail, and no nodes").map_err(told)?;
+        }
         self.observe_period(snapshot)?;
         instant::shares(snapshot, &self.limits)?;
         self.claims.observe(snapshot, events, &self.limits).map_err(told)?;
@@ -97,6 +102,21 @@ impl Safety {
     /// How near the mission has come to its bounds so far.
     pub const fn extremes(&self) -> &Extremes {
         &self.extremes
+    }
+}
+
+/// No node is absent: a clause says in what record.
+///
+/// # Errors
+///
+/// The nodes that are, as [`Property::Record`].
+pub(super) fn all_are_present(snapshot: &Snapshot, clause: &str) -> Result<(), Dispute> {
+    match &*snapshot.absent {
+        [] => Ok(()),
+        absent => {
+            let sentence = format!("nodes {absent:?} are absent {clause}");
+            Err(Dispute::of(Property::Record, &[], sentence))
+        }
     }
 }
 

@@ -11,9 +11,6 @@ use super::{Dispute, claims};
 use crate::network::limits::Limits;
 use crate::network::property::Property;
 
-/// Control periods after which a robot that is not heard of is missed.
-const PATIENCE: usize = 8;
-
 /// The events and the outcome of a mission with faults, as far as they speak of tasks, held against where robots
 /// are and against what the user asks for.
 #[derive(Clone, Debug)]
@@ -39,7 +36,7 @@ impl TaskClaims {
             last: None,
             absent: Vec::new(),
             seen: BTreeMap::new(),
-            news: PATIENCE + scenario.site().roll_validity() as usize,
+            news: scenario.site().patience_with_tasks() as usize,
         }
     }
 

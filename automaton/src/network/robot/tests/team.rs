@@ -6,6 +6,7 @@ use super::super::super::beacon::TeamReport;
 use super::super::super::record::Outcome;
 use super::super::super::roll::{Absent, Wreck};
 use super::super::Label;
+use super::super::team::SATURATED;
 use super::*;
 use crate::located::Place as _;
 
@@ -177,6 +178,23 @@ fn a_link_is_slack_below_its_length_by_a_twentieth() {
     };
     let bound = 0.95 * leader().build_length();
     assert_eq!((slack(bound - LITTLE), slack(bound + LITTLE)), (Some(0), None));
+}
+
+/// Where messages are lost, the flows in use may leave no reserve for some periods.
+#[test]
+fn links_carry_no_more_where_a_robot_sends_nearly_all_the_time_whatever_is_left_of_its_reserve() {
+    let told = |load: f64| {
+        let mut robot = leader();
+        robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+        robot.survey_links();
+        robot.links[0].share = load;
+        robot.residual = 0.0;
+        robot.review_team();
+        let team = robot.team.expect("it leads");
+        (team.slack, team.saturated)
+    };
+    assert_eq!(told(SATURATED - LITTLE), (Some(0), None));
+    assert_eq!(told(SATURATED), (None, Some(0)));
 }
 
 /// More room would not help a follower that is bunched behind the robot ahead.
