@@ -132,8 +132,8 @@ impl Robot {
     }
 
     /// Its task as it is announced again where no robot of its tree can come: to those of the trees that have not been
-    /// asked, if there is a redundant one; or once to all, if its team can be attached to another tree, and most of its
-    /// robots can come to the aid of one of those then.
+    /// asked, if there is a redundant one; or once more to all, if its team can be attached to another tree, and most of
+    /// its robots can come to the aid of one of those then, or if those have been asked before links were stretched.
     pub(super) fn announcement_to_others(
         &self,
         standstill: Option<Standstill>,
@@ -146,7 +146,8 @@ impl Robot {
             return Some(Announcement { eligible: Arc::new(others), ..known.clone() });
         }
         let is_near_other = standstill.is_some_and(|team| team.near_other_tree);
-        (is_near_other && !known.again).then(|| {
+        let may_help_now = is_near_other || is_any_stranded && self.stretched;
+        (may_help_now && !known.again).then(|| {
             let eligible = Arc::new((0..self.site.access_points.len()).collect());
             Announcement { eligible, again: true, ..known.clone() }
         })

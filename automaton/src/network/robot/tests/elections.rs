@@ -352,3 +352,18 @@ fn where_no_robot_can_come_to_a_team_near_another_tree_all_are_asked_once_more()
     assert_eq!(asked(true, true), None, "that was done");
     assert_eq!(asked(false, false), None);
 }
+
+/// Robots of other trees that have been asked before links were stretched may be able to go there now.
+#[test]
+fn once_links_are_stretched_all_are_asked_once_more() {
+    let asked = |stretched: bool, has_bid: bool| {
+        let mut robot = asked(east(3.0));
+        let bid = Bid { rank: 0, merit: -1, economy: 0 };
+        let mut election = Election::new(robot.notice_id());
+        election.place(4, has_bid.then_some(bid));
+        (robot.election, robot.stretched) = (Some(Arc::new(election)), stretched);
+        robot.announcement_to_others(None).is_some_and(|next| next.again)
+    };
+    assert!(asked(true, true));
+    assert!(!asked(false, true) && !asked(true, false));
+}
