@@ -120,7 +120,7 @@ fn a_trace_is_judged_from_its_file() {
     let sound = pleach(&["judge", path]);
     assert_eq!(sound.status.code(), Some(0));
     let verdict =
-        format!("{path}: sound, 179 control periods; the outcome is: insufficient robots");
+        format!("{path}: sound, 287 control periods; the outcome is: insufficient robots");
     assert_eq!(said(&sound.stdout).trim_end(), verdict);
 
     let text = std::fs::read_to_string(&trace).unwrap();

@@ -14,12 +14,6 @@ pub const REASONS: &[(&str, &str)] = &[
         "it has been announced a few periods before, and observers may hear of it late",
     ),
     (
-        "active: the first is dropped",
-        "by the eager strategy a member of the primary team may move while a recruit comes, and need not",
-    ),
-    ("path: the last is dropped", EARLY),
-    ("path: the primary team is on it", EARLY),
-    (
         "active team: it is emptied",
         "the team has become the active one a few periods before, and observers may hear of it late",
     ),
@@ -53,8 +47,6 @@ pub const REASONS: &[(&str, &str)] = &[
 
 const BRANCHES: &str = "where branches part is compared only while no subgroup is under way and no event \
                         was so recent that news of it may be";
-const EARLY: &str = "robots take their places on Σ one by one before the event that tells of its path, \
-                     which names them all";
 const ITERATE: &str =
     "λ is what a robot's iteration has come to; no property speaks of it but its sign";
 const SHOWN: &str =

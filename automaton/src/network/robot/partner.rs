@@ -12,7 +12,7 @@
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
-use pleach_discrete::network::{Agreement, IdSet, NodeId, Offer, Phase, PostKind, Reply};
+use pleach_discrete::network::{Agreement, IdSet, NodeId, Offer, Phase, Post, PostKind, Reply};
 
 use super::super::beacon::{Announced, TeamReport};
 use super::super::duty::{Duty, Shifting};
@@ -96,6 +96,11 @@ impl Robot {
         }
     }
 
+    /// Whether this robot and the neighbour are both of the primary team.
+    fn is_of_team(&self, neighbour: &Neighbour) -> bool {
+        self.duty.is_primary() && neighbour.post().is_some_and(Post::is_primary)
+    }
+
     /// Whether this robot could take over the post of `parked` from where it is.
     fn could_replace(&self, parked: &Neighbour) -> bool {
         let Some(station) = parked.station() else { return false };
@@ -112,7 +117,7 @@ impl Robot {
         let children_hold = self
             .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.hard_length());
-        let makes_room = match self.duty.is_primary() && station.post.is_primary() {
+        let makes_room = match self.is_of_team(parked) {
             true => stands_behind(self.team.as_ref(), parked.beacon.team.as_ref()),
             false => parked.beacon.parked,
         };
