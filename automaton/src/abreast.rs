@@ -15,7 +15,10 @@ pub(crate) fn abreast<T>(
     let work_through = || std::iter::from_fn(next).for_each(&work);
     thread::scope(|scope| {
         for _ in 1..threads {
-            scope.spawn(work_through);
+            // Where the system gives no more threads, those that there are do the work.
+            if thread::Builder::new().spawn_scoped(scope, work_through).is_err() {
+                break;
+            }
         }
         work_through();
     });

@@ -12,7 +12,6 @@ use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Fleet, Remark, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
-use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -82,9 +81,10 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
 fn longest_link(scenario: &ValidScenario) -> String {
     let fleets = scenario.fleets().iter().map(Fleet::scenario);
     let scenarios = if scenario.fleets().is_empty() { vec![scenario] } else { fleets.collect() };
-    let lengths: BTreeSet<String> =
-        scenarios.into_iter().map(|it| quantity(it.site().usual.build)).collect();
-    let lengths: Vec<String> = lengths.into_iter().collect();
+    let mut lengths: Vec<f64> = scenarios.into_iter().map(|it| it.site().usual.build).collect();
+    lengths.sort_by(f64::total_cmp);
+    let mut lengths: Vec<String> = lengths.into_iter().map(quantity).collect();
+    lengths.dedup();
     format!("{}, along the shortest way around walls", lengths.join(" and "))
 }
 

@@ -85,6 +85,8 @@ pub struct Announcement {
     /// Whether the election is repeated among the robots of all access points, since a team that found no recruit can be
     /// attached to another tree.
     pub again: bool,
+    /// Whether links had been stretched when the election was repeated.
+    pub stretched: bool,
 }
 
 impl Announcement {

@@ -41,7 +41,8 @@ pub trait Medium<M, B> {
     ) -> Result<(), E>;
 
     /// In place of that, all that arrives now, for each node what it would hear in that order. A medium offers it only
-    /// where no node says anything, to other nodes or to observers, until its next tick.
+    /// where no node says anything, to other nodes or to observers, until its next tick. What it offers counts as
+    /// delivered.
     fn mail(&mut self) -> Option<&Mail<M>> {
         None
     }

@@ -318,6 +318,7 @@ impl AccessPoint {
             roster: self.present_roster(),
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
             again: false,
+            stretched: false,
         })
     }
 

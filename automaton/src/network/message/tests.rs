@@ -74,6 +74,7 @@ fn notices() -> Vec<Notice> {
             roster: set(&[0, 1, 63, 64, 300]),
             eligible: set(&[]),
             again: true,
+            stretched: true,
         })),
         Notice::Call { caller: 8, releases_leader: true },
         Notice::Path(Arc::new(Path { hops: hops(), releases_leader: false })),

@@ -222,7 +222,7 @@ impl Robot {
     }
 
     /// The node of the tree of another access point, within d_build, over which the way from its post is shortest, if it
-    /// is shorter than its own.
+    /// is shorter than its own; no redundant robot, which may be recruited.
     pub(super) fn node_of_other_tree(&self) -> Option<Anchor> {
         let (own, way) = (self.duty.post()?.id, self.lineage()?);
         let nodes = self.neighbours.iter().filter_map(|node| {
@@ -232,6 +232,7 @@ impl Robot {
                 && !other.contains(own)
                 && self.confirms(other)
                 && self.may_attach_to(node)
+                && node.post().is_none_or(Post::is_fixed)
                 && self.may_build(self.walk_to(node));
             self.anchor_of(node).filter(|_| is_shorter).map(|anchor| (other.hops(), anchor))
         });

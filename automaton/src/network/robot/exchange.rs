@@ -379,7 +379,15 @@ mod tests {
         let all = Arc::new([0, 1].into_iter().collect());
         let (position, eligible) = (Point::new(3.0, 3.0), Arc::new([0].into_iter().collect()));
         let before = Arc::default();
-        let task = Announcement { task: 0, position, before, roster: all, eligible, again: false };
+        let task = Announcement {
+            task: 0,
+            position,
+            before,
+            roster: all,
+            eligible,
+            again: false,
+            stretched: false,
+        };
         let task = Notice::Task(Shared::new(task));
         mover.bulletin = mover.bulletin.next(2, Shared::new(task));
         hear(&mut robot, &mover);

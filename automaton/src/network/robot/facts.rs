@@ -377,7 +377,7 @@ impl Robot {
         is_theirs && election.is_complete(roster)
     }
 
-    fn is_caller(&self) -> bool {
+    pub(super) fn is_caller(&self) -> bool {
         matches!(*self.notice(), Notice::Call { caller, .. } if caller == self.id)
     }
 
@@ -396,9 +396,9 @@ impl Robot {
                 Duty::Waiting(Waiting { held, place, .. })
                 | Duty::AwaitingRelease(AwaitingRelease { held, place }),
             ) => {
+                let is_alone = shift.subgroups.is_empty() && !self.is_being_given_duty();
                 facts.relieved = *place == shift.path.last_break_point()
-                    && !self.is_being_given_duty()
-                    && (shift.subgroups.is_empty() || self.is_relieved_of(held.station.post.id));
+                    && (is_alone || self.is_relieved_of(held.station.post.id));
             }
             _ => {}
         }

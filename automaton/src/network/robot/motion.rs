@@ -24,7 +24,8 @@ pub(super) const MARGIN: f64 = 1e-4;
 const QUEUE: f64 = 2.2;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
 pub(super) const STILL: f64 = 0.3;
-/// Control periods without progress after which a robot measures its position anew.
+/// Control periods without progress after which a robot measures its position anew, and one of the primary team makes
+/// room for others.
 pub(super) const PERSISTENCE: u32 = 4;
 /// A robot that returns to one of this many previous places counts as standing still.
 const RESTING_PLACES: usize = 8;

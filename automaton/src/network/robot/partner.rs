@@ -4,9 +4,10 @@
 //! that touches one behind it which stands still: in a narrow corridor a team may stand in an order in which it cannot
 //! go on. The parked robot answers with its own; the mover, which is within δ of the post, takes it; and when the parked
 //! robot sees that, it takes the mover's duty: the [`Offers`] of the two. From the offer to the end
-//! neither takes a step of the mission that changes a duty, so that what is taken over is what was offered. While both run, a
-//! post is never without a robot; no duty is ever done by two. With every exchange the way that remains
-//! gets shorter, so that exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
+//! neither takes a step of the mission that changes a duty, so that what is taken over is what was offered. Between
+//! the two takings both hold the duty of the parked robot, and nobody that of the mover. With every exchange the way
+//! that remains gets shorter, and two members of the team exchange duties once at most until a newer notice is heard:
+//! exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
 //! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner somewhat
 //! farther from its goal too, but none with which it has exchanged duties since the newest notice.
 //!
@@ -53,7 +54,8 @@ impl Robot {
         for neighbour in &self.neighbours {
             if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
                 let way = self.site.distance(neighbour.position(), goal);
-                let is_return = way >= own_way && self.has_exchanged_with(neighbour.id());
+                let is_return = self.has_exchanged_with(neighbour.id())
+                    && (way >= own_way || self.is_of_team(neighbour));
                 if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
                     (nearest, partner) = (way, Some(neighbour.id()));
                 }
@@ -177,6 +179,7 @@ impl Robot {
             mover.is_some_and(|it| stands_behind(it.beacon.team.as_ref(), self.team.as_ref()))
         };
         (self.is_parked() || stands_behind_mover())
+            && !(self.is_caller() && self.duty.is_primary())
             && self.knows_mission()
             && self.offers().offer().is_none()
             && self.duty.station().is_some()

@@ -131,9 +131,12 @@ impl Robot {
         self.mission.recruit_election().is_some() && went_on_alone
     }
 
-    /// Its task as it is announced again where no robot of its tree can come: to those of the trees that have not been
-    /// asked, if there is a redundant one; or once more to all, if its team can be attached to another tree, and most of
-    /// its robots can come to the aid of one of those then, or if those have been asked before links were stretched.
+    /// Its task as it is announced again where no robot of its tree can come:
+    ///
+    /// - to the robots of the trees that have not been asked, if one of them is redundant;
+    /// - once more to all, if its team can be attached to another tree: most of its robots can come to the aid of one
+    ///   of those then;
+    /// - once more to all, if one is redundant, and they have been asked before links were stretched.
     pub(super) fn announcement_to_others(
         &self,
         standstill: Option<Standstill>,
@@ -141,16 +144,23 @@ impl Robot {
         let known = self.announcement()?;
         let own_root = self.lineage().map(|lineage| lineage.root());
         let others: IdSet = known.eligible.iter().filter(|&root| Some(root) != own_root).collect();
+        let announced_to = |eligible: IdSet, again: bool| {
+            let (eligible, stretched) = (Arc::new(eligible), self.stretched);
+            Some(Announcement { eligible, again, stretched, ..known.clone() })
+        };
+        let was_asked = own_root.is_some_and(|root| known.eligible.contains(root));
         let is_any_stranded = self.election.as_ref().is_some_and(|it| it.best().is_some());
-        if is_any_stranded && !others.is_empty() {
-            return Some(Announcement { eligible: Arc::new(others), ..known.clone() });
+        if is_any_stranded && was_asked && !others.is_empty() {
+            return announced_to(others, known.again);
         }
-        let is_near_other = standstill.is_some_and(|team| team.near_other_tree);
-        let may_help_now = is_near_other || is_any_stranded && self.stretched;
-        (may_help_now && !known.again).then(|| {
-            let eligible = Arc::new((0..self.site.access_points.len()).collect());
-            Announcement { eligible, again: true, ..known.clone() }
-        })
+        let all = || (0..self.site.access_points.len()).collect();
+        if !known.again && standstill.is_some_and(|team| team.near_other_tree) {
+            return announced_to(all(), true);
+        }
+        match is_any_stranded && self.stretched && !known.stretched {
+            true => announced_to(all(), known.again),
+            false => None,
+        }
     }
 
     fn standstill(&self) -> Option<Standstill> {

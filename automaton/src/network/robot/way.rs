@@ -115,8 +115,8 @@ impl Robot {
         (by_path > left(onward.length) + allowance * self.clearance()).then_some(way)
     }
 
-    /// Whether its link to the robot that it follows, which `path` leads to, gets too long on `way`: half-way round
-    /// the obstacle, where the two are equally long.
+    /// Whether its link to the robot that it follows, which `path` leads to, would exceed its limit on `way`. It is
+    /// longest where both sides of the obstacle are equally long: (path + way) / 2.
     pub(super) fn is_held_by_link_ahead(&self, path: &Geodesic, way: &Geodesic) -> bool {
         let limit = self.link_ahead().map(|link| link.limit);
         limit.is_some_and(|limit| (path.length + way.length) / 2.0 > limit)

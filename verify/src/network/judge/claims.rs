@@ -4,7 +4,7 @@ use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::Strategy;
 use pleach_discrete::network::Role;
 
-use super::ledger::Ledger;
+use super::ledger::{Ledger, Stage};
 use super::walk::Walk;
 use super::{Dispute, Scene};
 use crate::network::limits::{Limits, SLACK};
@@ -254,7 +254,8 @@ pub(super) fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<()
 /// With the strategy of the paper the primary team stands still while Σ is walked.
 fn goes_on(mover: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
     let strategy = scene.limits.settings().strategy;
-    if strategy == Strategy::Eager || !ledger.is_of_waiting_team(mover) {
+    let waits = ledger.stage() == Stage::Shifting && ledger.is_of_calling_team(mover);
+    if strategy == Strategy::Eager || !waits {
         return Ok(());
     }
     let team = &ledger.primary_team;

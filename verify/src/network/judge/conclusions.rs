@@ -13,6 +13,9 @@ use super::walk::Walk;
 use super::{Dispute, Scene, claims, posts, states, task_or_none};
 use crate::network::property::Property;
 
+/// Control periods for which a leader that awaits its release waits until nodes have had time to become redundant.
+const RETIREMENT: usize = 3;
+
 /// Control periods after which the user has heard what all robots know: one until an access point has heard it of
 /// them, and one until that has answered the user.
 const NEWS_TO_USER: usize = 2;
@@ -243,20 +246,20 @@ impl Conclusions {
         }
         let is_known = self.stage.values().any(|&stage| is_phase_of(stage, snapshot.phase));
         // A robot may know that an election is over before its winner tells observers.
-        let is_ahead = foreshadows(*self.stage.current(), snapshot.phase)
-            && snapshot.step - *self.ahead.get_or_insert(snapshot.step) <= self.patience;
-        // With the eager strategy a leader that awaits its release calls when the tree has settled.
+        // With the eager strategy a leader that awaits its release calls when nodes have had time to become redundant.
         let is_eager = limits.settings().strategy == Strategy::Eager;
-        let is_settling = is_eager
-            && ledger.awaits_release
-            && snapshot.phase == Phase::Advance
-            && self
-                .last_event
-                .is_none_or(|last| snapshot.step <= last + self.patience + LONGEST_SETTLING);
+        let awaits_retirements =
+            is_eager && ledger.awaits_release && snapshot.phase == Phase::Advance;
+        let longest = match awaits_retirements {
+            true => self.patience + RETIREMENT,
+            false => self.patience,
+        };
+        let is_ahead = (awaits_retirements || foreshadows(*self.stage.current(), snapshot.phase))
+            && snapshot.step - *self.ahead.get_or_insert(snapshot.step) <= longest;
         if is_known {
             self.ahead = None;
         }
-        if !is_known && !is_ahead && !is_settling {
+        if !is_known && !is_ahead {
             let sentence = format!(
                 "the phase is reported as “{}”, and by the events {}",
                 snapshot.phase.name(),

@@ -126,9 +126,11 @@ impl Ledger {
         }
     }
 
-    /// Whether the robot is of the primary team while Σ is walked: with the eager strategy it goes on meanwhile.
-    pub fn is_of_waiting_team(&self, robot: usize) -> bool {
-        self.stage() == Stage::Shifting && self.primary_team.contains(&robot)
+    /// Whether the robot is of a primary team that calls for a recruit, or whose recruit comes: with the eager strategy
+    /// it goes on meanwhile, and what it has begun before the call it ends.
+    pub fn is_of_calling_team(&self, robot: usize) -> bool {
+        matches!(self.stage(), Stage::Calling | Stage::Shifting)
+            && self.primary_team.contains(&robot)
     }
 
     /// Enters an event.
@@ -531,7 +533,7 @@ impl Ledger {
     fn exchange(&mut self, mover: usize, parked: usize) -> Result<(), Dispute> {
         let may_give = self.active_team().contains(&mover)
             || self.dismissed.contains(&mover)
-            || self.is_of_waiting_team(mover);
+            || self.is_of_calling_team(mover);
         if mover == parked || !may_give {
             let sentence = format!(
                 "robot {mover} gives its duty to robot {parked} and is not of the active team {:?}",

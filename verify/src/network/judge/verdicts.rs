@@ -71,7 +71,9 @@ impl Tried {
                 self.trees.extend(trees);
                 self.note(ledger, scenes[0], Then::ElectionRepeated);
             }
+            // Robots of trees that have been asked before can come where links are longer.
             MissionEvent::LinksStretched { .. } => {
+                self.trees.clear();
                 self.note(ledger, scenes[0], Then::LinksStretched);
             }
             _ => {}

@@ -85,6 +85,7 @@ fn a_robot_takes_up_a_mission_that_goes_on() {
         roster: Arc::new([0, 1].into_iter().collect()),
         eligible: Arc::new([0].into_iter().collect()),
         again: false,
+        stretched: false,
     };
     let announced = after_the_end(Notice::Task(Shared::new(announcement)));
     assert_eq!(announced, Phase::LeaderElection);

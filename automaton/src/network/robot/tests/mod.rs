@@ -179,6 +179,7 @@ impl Robot {
             roster: Arc::new((0..ROBOTS).collect()),
             eligible: Arc::new([0].into_iter().collect()),
             again: false,
+            stretched: false,
         };
         let announcement = Shared::new(announcement);
         self.announced = Some((self.notice_id(), announcement));
