@@ -326,7 +326,7 @@ const SPOILS: [Spoil; 17] = [
     (
         "a mission is over from the middle on",
         |lines| {
-            for k in 200..=255 {
+            for k in 200..=258 {
                 step(lines, k)["fleets"][0]["ended"] = json!(200);
             }
         },

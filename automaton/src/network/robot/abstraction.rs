@@ -246,6 +246,7 @@ impl Robot {
             route,
             agreement,
             team,
+            led_from,
             stretched,
             longest_wait: _, // told, with its own depth
             followed_post,
@@ -344,6 +345,7 @@ impl Robot {
             format!("{:?}", (id, position, still_periods, parent, &**place, can_detach, silences)),
             format!("{:?}", (&**duty, posts_made, unused_periods, followed_post, below, closed)),
             format!("{:?}", (&**mission, election, bid, waited, agreement, team, stretched, wait)),
+            format!("{led_from:?}"),
             format!("{:?}", (&**exchange, answered, self.partners_since_notice())),
             format!("{:?}", (bulletin, epoch, announced, has_reached, route)),
         ]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId};
 
-use super::super::beacon::{Announced, Announcement, Notice};
+use super::super::beacon::{Announced, Notice};
 use super::super::mission::{Advance, LeaderElection};
 use super::super::record::MissionEvent;
 use super::Robot;
@@ -50,6 +50,7 @@ pub(super) fn learn<A: Clone>(phase: &A, robot: &Robot, effects: &mut Effects) -
 
 /// Every token is known: the winner leads, at once or after it has been released.
 pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects) -> Advance {
+    effects.push(MissionEffect::LedFrom(robot.root_of_winner()));
     if robot.winner() == Some(robot.id) {
         let conflict = robot.duty.is_bound();
         if let Some(task) = robot.current_task() {
@@ -74,11 +75,12 @@ impl Robot {
         if self.election.as_deref().is_none_or(is_answered) || way.is_none() && has_time {
             return;
         }
-        let competes = |it: &&Announcement| {
-            it.roster.contains(self.id) && way.is_some_and(|way| it.eligible.contains(way.root()))
-        };
-        let announcement = self.announcement().filter(competes);
-        let bid = announcement.and_then(|announcement| self.leader_bid(announcement.position));
+        let bid = self.announcement().zip(way).and_then(|(announcement, way)| {
+            let root = way.root();
+            let competes =
+                announcement.roster.contains(self.id) && announcement.eligible.contains(root);
+            competes.then(|| self.leader_bid(announcement.position, root)).flatten()
+        });
         self.place_token(bid);
     }
 
@@ -92,8 +94,9 @@ impl Robot {
         }
     }
 
-    /// The nearer to the task along the geodesic, the better; none if the task is out of reach.
-    fn leader_bid(&self, task: Point) -> Option<Bid> {
+    /// The nearer to the task along the geodesic, the better; ties go to the tree of the first access point. None if
+    /// the task is out of reach.
+    fn leader_bid(&self, task: Point, root: usize) -> Option<Bid> {
         let target = self.site.place_to_service(task, self.position);
         let gap = (target - task).norm();
         let distance = self.site.distance(self.position, target);
@@ -102,7 +105,7 @@ impl Robot {
         within_reach.then(|| Bid {
             rank: if self.could_be_relieved() { 1 } else { 0 },
             merit: -(distance / unit).round() as i64,
-            economy: 0,
+            economy: -(root as i64),
         })
     }
 
@@ -130,6 +133,13 @@ impl Robot {
             is_newer.then_some(announced)
         });
         newer.max_by_key(|(id, _)| *id)
+    }
+
+    /// The access point in whose tree the winner of the leader election is that this robot takes part in; none where
+    /// there is one access point.
+    fn root_of_winner(&self) -> Option<usize> {
+        let best = self.election.as_ref()?.best().filter(|_| self.site.access_points.len() > 1);
+        best.map(|(bid, _)| bid.economy.unsigned_abs() as usize)
     }
 
     /// The winner of the election that this robot takes part in, as far as it knows.

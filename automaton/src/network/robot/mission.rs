@@ -40,6 +40,8 @@ pub enum MissionEffect {
     Issue(Notice),
     /// It goes by this announcement.
     Learn(Announced),
+    /// The leader is of the tree of this access point when it is elected.
+    LedFrom(Option<usize>),
     /// It has reached the task of the announcement that it goes by.
     Accomplish,
     /// It has forgotten what became of the election by the announcement that it goes by.
@@ -85,6 +87,7 @@ impl Holds<Mission> for Robot {
                     self.announced = Some(announced);
                     self.forgetful = Arc::default();
                 }
+                MissionEffect::LedFrom(root) => self.led_from = root,
                 MissionEffect::Accomplish => {
                     self.accomplished = self.announced.as_ref().map(|&(id, _)| id);
                 }

@@ -255,6 +255,8 @@ pub struct Robot {
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
+    /// The access point in whose tree the leader of its team was elected, if there are several.
+    led_from: Option<usize>,
     /// Whether a team has found no robot that can be recruited.
     stretched: bool,
     /// For how many rounds news may be under way, as far as it has heard.
@@ -355,6 +357,7 @@ impl Robot {
             route: None,
             agreement: None,
             team: None,
+            led_from: None,
             stretched: false,
             longest_wait: 0,
             followed_post: None,

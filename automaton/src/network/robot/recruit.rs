@@ -143,14 +143,16 @@ impl Robot {
     ) -> Option<Announcement> {
         let known = self.announcement()?;
         let own_root = self.lineage().map(|lineage| lineage.root());
-        let others: IdSet = known.eligible.iter().filter(|&root| Some(root) != own_root).collect();
+        // Its team may be in another tree by now.
+        let have_been_asked = [own_root, self.led_from];
+        let others: IdSet =
+            known.eligible.iter().filter(|&root| !have_been_asked.contains(&Some(root))).collect();
         let announced_to = |eligible: IdSet, again: bool| {
             let (eligible, stretched) = (Arc::new(eligible), self.stretched);
             Some(Announcement { eligible, again, stretched, ..known.clone() })
         };
-        let was_asked = own_root.is_some_and(|root| known.eligible.contains(root));
         let is_any_stranded = self.election.as_ref().is_some_and(|it| it.best().is_some());
-        if is_any_stranded && was_asked && !others.is_empty() {
+        if is_any_stranded && others.len() < known.eligible.len() && !others.is_empty() {
             return announced_to(others, known.again);
         }
         let all = || (0..self.site.access_points.len()).collect();

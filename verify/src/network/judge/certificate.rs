@@ -147,6 +147,7 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt], now: &Snapshot) -> Complain
     let mut tried = BTreeSet::new();
     for (attempt, trial) in attempts.iter().zip(trials) {
         is_call(attempt, trial)?;
+        tried.extend(trial.led_from);
         for other in &attempt.others {
             could_not_come(other, trial, &tried).map_err(|clause| {
                 format!("robot {}, at k = {}: {clause}", other.robot, attempt.k)

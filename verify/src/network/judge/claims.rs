@@ -283,7 +283,20 @@ fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
 
 /// Remark 5.6: a robot of the primary team is attached to this node.
 fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
-    let is_edge = |parent: usize| scene.snapshot.tree.contains(&(robot, parent));
+    // Who exchanges duties in the same period is found in the place of the other.
+    let partner_of = |node: usize| {
+        scene.events.iter().find_map(|event| match *event {
+            MissionEvent::DutiesExchanged { mover, parked } if mover == node => Some(parked),
+            MissionEvent::DutiesExchanged { mover, parked } if parked == node => Some(mover),
+            _ => None,
+        })
+    };
+    let places = |node: usize| [Some(node), partner_of(node)].into_iter().flatten();
+    let is_edge = |parent: usize| {
+        places(robot).any(|child| {
+            places(parent).any(|parent| scene.snapshot.tree.contains(&(child, parent)))
+        })
+    };
     // It may have attached to several nodes in one period, one after the other.
     let goes_on = scene.events.iter().any(|event| {
         matches!(*event, MissionEvent::Reattached { robot: it, parent } if it == robot && is_edge(parent))

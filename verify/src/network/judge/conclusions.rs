@@ -336,8 +336,15 @@ impl Conclusions {
             let is_dissolving = snapshot.phase == Phase::Ended
                 && is_part(team, &ledger.primary_team)
                 || outdated.is_some_and(|known| is_part(team, known));
+            // A call may be answered, and the election repeated, in the period in which it is made.
+            let is_repeated =
+                |event: &MissionEvent| matches!(event, MissionEvent::ElectionRepeated { .. });
+            let is_dissolved = ledger.primary_team.is_empty()
+                && events.iter().any(is_repeated)
+                && self.primary_team.values().any(|known| is_part(team, known));
             let is_that = self.apart(team) == self.apart(&ledger.primary_team);
-            if !is_that && !is_dissolving && !self.is_unseen(team, ledger) {
+            let is_lawful = is_that || is_dissolving || is_dissolved;
+            if !is_lawful && !self.is_unseen(team, ledger) {
                 let sentence = format!(
                     "an event names the primary team {team:?}, which is {:?}",
                     ledger.primary_team

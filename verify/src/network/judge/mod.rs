@@ -263,7 +263,14 @@ impl<'a> Judge<'a> {
         snapshot: &Snapshot,
     ) -> Result<Ledger, Dispute> {
         let scene = self.scene(snapshot, events);
-        claims::is_true(event, &self.ledger, &scene)?;
+        let told = claims::is_true(event, &self.ledger, &scene);
+        // Robots that have not heard that their task is taken back go on as if it were not.
+        match (told, &self.ledger.outdated) {
+            (Err(dispute), Some(known)) => {
+                claims::is_true(event, known, &scene).map_err(|_| dispute)?;
+            }
+            (told, _) => told?,
+        }
         self.stretches_for_want_of_a_robot(event)?;
         self.terms.clone().enter(event, snapshot.step)?;
         self.calls_for_want_of_length(event, snapshot)?;
@@ -409,7 +416,7 @@ impl<'a> Judge<'a> {
 
     /// The call for a recruit with which the mission ended, if it ended with one.
     fn last_trial(&self) -> Option<Trial> {
-        Trial::of(&self.ledger, self.previous.as_ref()?, Then::Ended)
+        self.tried.trial(&self.ledger, self.previous.as_ref()?, Then::Ended)
     }
 
     /// Whether the election was repeated among robots of other trees, and has no leader.

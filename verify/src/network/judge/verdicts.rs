@@ -20,6 +20,8 @@ use crate::network::bound::Spans;
 pub struct Tried {
     /// The access points in whose trees no recruit was left.
     trees: BTreeSet<usize>,
+    /// The access point in whose tree the leader was elected: those of its robots that are left were asked then.
+    led_from: Option<usize>,
     /// The calls that no robot could answer.
     trials: Vec<Trial>,
 }
@@ -31,6 +33,8 @@ pub struct Trial {
     pub caller: usize,
     /// Its team.
     pub team: Vec<usize>,
+    /// The access point in whose tree its leader was elected.
+    pub led_from: Option<usize>,
     /// Whether the leader was to be released.
     pub releases_leader: bool,
     /// Whether links were stretched already.
@@ -43,11 +47,17 @@ pub struct Trial {
 
 impl Trial {
     /// The call that is under way by the ledger, given up after this instant; none if no robot calls.
-    pub fn of(ledger: &Ledger, snapshot: &Snapshot, then: Then) -> Option<Self> {
+    fn of(
+        ledger: &Ledger,
+        led_from: Option<usize>,
+        snapshot: &Snapshot,
+        then: Then,
+    ) -> Option<Self> {
         let caller = *ledger.primary_team.first()?;
         (ledger.stage() == Stage::Calling).then(|| Trial {
             caller,
             team: ledger.primary_team.clone(),
+            led_from,
             releases_leader: ledger.awaits_release,
             stretched: ledger.stretched,
             then,
@@ -63,12 +73,16 @@ impl Tried {
             MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => {
                 *self = Tried::default();
             }
+            MissionEvent::LeaderElected { robot, .. } => {
+                let mut scenes = scenes.into_iter().flatten();
+                self.led_from = scenes.find_map(|snapshot| tree_of(*robot, snapshot));
+            }
             MissionEvent::ElectionRepeated { .. } => {
                 let trees = scenes
                     .into_iter()
                     .flatten()
                     .filter_map(|snapshot| tree_of(*ledger.primary_team.first()?, snapshot));
-                self.trees.extend(trees);
+                self.trees.extend(trees.chain(self.led_from));
                 self.note(ledger, scenes[0], Then::ElectionRepeated);
             }
             // Robots of trees that have been asked before can come where links are longer.
@@ -81,7 +95,12 @@ impl Tried {
     }
 
     fn note(&mut self, ledger: &Ledger, before: Option<&Snapshot>, then: Then) {
-        self.trials.extend(before.and_then(|before| Trial::of(ledger, before, then)));
+        self.trials.extend(before.and_then(|before| self.trial(ledger, before, then)));
+    }
+
+    /// The call that is under way by the ledger, given up after this instant; none if no robot calls.
+    pub fn trial(&self, ledger: &Ledger, snapshot: &Snapshot, then: Then) -> Option<Trial> {
+        Trial::of(ledger, self.led_from, snapshot, then)
     }
 
     /// The calls that no robot could answer since the task was announced, but for one that ended the mission.
@@ -105,7 +124,7 @@ impl Tried {
                         "robot {robot} is redundant, and in the tree of robot {caller}, which calls"
                     ));
                 }
-                Some(own) if !self.trees.contains(&own) => {
+                Some(own) if self.led_from != Some(own) && !self.trees.contains(&own) => {
                     return Some(format!(
                         "robot {robot} is redundant, and the tree of access point {own} was not tried"
                     ));

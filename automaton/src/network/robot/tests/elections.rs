@@ -353,17 +353,42 @@ fn where_no_robot_can_come_to_a_team_near_another_tree_all_are_asked_once_more()
     assert_eq!(asked(false, false), None);
 }
 
+/// The leader may be in another tree by now than when its election was announced to the robots of some trees.
+#[test]
+fn who_has_been_asked_is_not_asked_again_because_the_team_is_in_another_tree() {
+    let next = |eligible: &[usize], led_from: Option<usize>| {
+        let mut robot = asked(east(3.0));
+        robot.led_from = led_from;
+        let (id, known) = robot.announced.clone().expect("it knows the task");
+        let eligible = Arc::new(eligible.iter().copied().collect());
+        robot.announced = Some((id, Shared::new(Announcement { eligible, ..(*known).clone() })));
+        let mut election = Election::new(robot.notice_id());
+        election.place(4, Some(Bid { rank: 0, merit: -1, economy: 0 }));
+        robot.election = Some(Arc::new(election));
+        let next = robot.announcement_to_others(None);
+        next.map(|next| next.eligible.iter().collect::<Vec<_>>())
+    };
+    assert_eq!(next(&[0, 1], Some(0)), Some(vec![1]));
+    assert_eq!(next(&[1, 2], Some(1)), Some(vec![2]));
+    assert_eq!((next(&[1], Some(1)), next(&[1], None)), (None, None));
+}
+
 /// Robots of other trees that have been asked before links were stretched may be able to go there now.
 #[test]
 fn once_links_are_stretched_all_are_asked_once_more() {
-    let asked = |stretched: bool, has_bid: bool| {
+    let are_asked = |stretched: bool, has_bid: bool, were_stretched: bool| {
         let mut robot = asked(east(3.0));
+        let (id, known) = robot.announced.clone().expect("it knows the task");
+        let known = Announcement { stretched: were_stretched, ..(*known).clone() };
+        robot.announced = Some((id, Shared::new(known)));
         let bid = Bid { rank: 0, merit: -1, economy: 0 };
         let mut election = Election::new(robot.notice_id());
         election.place(4, has_bid.then_some(bid));
         (robot.election, robot.stretched) = (Some(Arc::new(election)), stretched);
-        robot.announcement_to_others(None).is_some_and(|next| next.again)
+        robot.announcement_to_others(None).is_some_and(|next| next.stretched)
     };
-    assert!(asked(true, true));
-    assert!(!asked(false, true) && !asked(true, false));
+    assert!(are_asked(true, true, false));
+    assert!(!are_asked(false, true, false), "they are as long as before");
+    assert!(!are_asked(true, false, false), "no robot is redundant");
+    assert!(!are_asked(true, true, true), "that was done");
 }
