@@ -67,7 +67,8 @@ pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> End
     let (name, slack) = (robot.site.name_of(robot.id), robot.team.and_then(|team| team.slack));
     let reason = match (robot.duty.place(), slack.map(|slack| robot.site.name_of(slack))) {
         (Some(_), _) => format!(
-            "robot {name} cannot get to the place of Σ that it should take: something stands in its way"
+            "robot {name} cannot get to the place of Σ that it should take: its link does not reach there, or \
+             something stands in its way"
         ),
         (None, Some(slack)) => format!(
             "the primary team stands still although robot {slack} has room on its link: something \

@@ -446,15 +446,21 @@ impl Conclusions {
         let primary = || self.primary_team.values().filter(|_| is_eager);
         let active = || self.active_team.values().chain([&snapshot.active_team]);
         let teams = || active().chain(primary()).flatten();
+        let settings = limits.settings();
+        let clearance = settings.planning_clearance();
+        let near_enough = SETTLED * clearance * (1.0 - 1e-6) + settings.errors.stray();
+        let is_settled = |robot: usize| {
+            let position = snapshot.positions[robot];
+            places.of(robot).map(|place| (position - place).norm() <= near_enough)
+        };
+        // A robot on its way back to its post, or out of another's way, may ask for room as well.
+        let others = || snapshot.active.iter().filter(|&&robot| is_settled(robot) == Some(false));
         for &robot in &snapshot.active {
             let position = snapshot.positions[robot];
-            let Some(place) = places.of(robot).filter(|_| !teams().any(|it| *it == robot)) else {
+            let Some(settled) = is_settled(robot).filter(|_| !teams().any(|it| *it == robot))
+            else {
                 continue;
             };
-            let settings = limits.settings();
-            let clearance = settings.planning_clearance();
-            let near_enough = SETTLED * clearance * (1.0 - 1e-6) + settings.errors.stray();
-            let settled = (position - place).norm() <= near_enough;
             let is_near = |mover: &usize| {
                 let distance = (snapshot.positions[*mover] - position).norm();
                 distance <= MAKING_WAY * clearance
@@ -464,7 +470,7 @@ impl Conclusions {
                 && snapshot.path.contains(&robot);
             if settled && sets_out_early {
                 self.early_movers.push(robot);
-            } else if settled && !teams().any(is_near) {
+            } else if settled && !teams().chain(others()).any(is_near) {
                 let sentence = format!(
                     "robot {robot} may move, and it is at its post, not of the active team, and in \
                      no other robot's way"

@@ -302,8 +302,12 @@ impl<'a> Judge<'a> {
     ) -> Result<(), Dispute> {
         let MissionEvent::RecruitCalled { robot } = *event else { return Ok(()) };
         let limits = self.monitor.limits();
+        // Robots that have not heard that their task is taken back pursue it.
+        let mut known = [Some(&self.ledger), self.ledger.outdated.as_deref()].into_iter().flatten();
         let clause = match limits.settings().strategy {
-            Strategy::Eager if self.is_too_short(robot, snapshot) => return Ok(()),
+            Strategy::Eager if known.any(|it| self.is_too_short(it, robot, snapshot)) => {
+                return Ok(());
+            }
             Strategy::Eager => "although the links of its team reach the task",
             _ => "and teams call only when they stand still",
         };
@@ -313,11 +317,11 @@ impl<'a> Judge<'a> {
 
     /// Whether the way from the parent of p₁ to the place nearest to the task is longer than as many links as the
     /// team has robots, at the beginning or at the end of the period.
-    fn is_too_short(&self, first: usize, snapshot: &Snapshot) -> bool {
+    fn is_too_short(&self, ledger: &Ledger, first: usize, snapshot: &Snapshot) -> bool {
         let limits = self.monitor.limits();
         let ground = Ground::of(&self.scenario, limits);
-        let Some((ground, task)) = ground.zip(self.ledger.task()) else { return false };
-        let reach = self.ledger.primary_team.len() as f64 * self.link_limit();
+        let Some((ground, task)) = ground.zip(ledger.task()) else { return false };
+        let reach = ledger.primary_team.len() as f64 * self.link_limit();
         [self.previous.as_ref(), Some(snapshot)].into_iter().flatten().any(|snapshot| {
             let parent = verdicts::parent_of(first, snapshot);
             parent.is_some_and(|parent| {
