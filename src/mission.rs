@@ -12,6 +12,7 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 use crate::automaton::network::certificate::{Certificate, Hindrance, Standing};
+use crate::automaton::network::phrase;
 use crate::automaton::network::record::{End, Faults, FleetEnd, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::{Fleet, ValidScenario};
 use crate::automaton::network::{
@@ -21,7 +22,6 @@ use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason, System};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
-use crate::story;
 use crate::verify::network::judge::missing;
 use crate::verify::network::storm::{self, Storm};
 use crate::verify::network::{Extremes, Referee, Violation};
@@ -403,7 +403,7 @@ fn beside_bodies(end: &End) -> Option<String> {
     let is_beside = |standing: &&Standing| standing.hindrances.iter().any(is_body);
     let robots: Vec<usize> = team.iter().filter(is_beside).map(|it| it.robot).collect();
     (!robots.is_empty()).then(|| {
-        let robots = story::robots(&robots);
+        let robots = phrase::named("robot", &robots);
         format!("{}; a robot of another access point stands beside {robots}", end.reason)
     })
 }

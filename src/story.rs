@@ -1,5 +1,6 @@
 //! The story of a mission: each event as a sentence, and the moments that figures mark.
 
+use crate::automaton::network::phrase;
 use crate::automaton::network::record::MissionEvent;
 
 /// What makes a moment worth a picture, and a mark across curves.
@@ -137,7 +138,7 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             format!(
                 "robot {robot} is recruited along path {}, split at {}",
                 chain(path),
-                enumeration(break_points)
+                phrase::listed(break_points)
             ),
             None,
         ),
@@ -197,15 +198,15 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             None,
         ),
         MissionEvent::TaskReannounced { task, gone, joined } => {
-            let gone = match gone.len() {
-                0 => String::new(),
-                1 => format!("{} does not answer any more: ", robots(gone)),
-                _ => format!("{} do not answer any more: ", robots(gone)),
+            let gone = match gone[..] {
+                [] => String::new(),
+                _ => format!("{} not answer any more: ", phrase::robots(gone, ["does", "do"])),
             };
-            let joined = match joined.len() {
-                0 => String::new(),
-                1 => format!(", and {} takes part from now on", robots(joined)),
-                _ => format!(", and {} take part from now on", robots(joined)),
+            let joined = match joined[..] {
+                [] => String::new(),
+                _ => {
+                    format!(", and {} part from now on", phrase::robots(joined, ["takes", "take"]))
+                }
             };
             (format!("{gone}task {task} is announced again{joined}"), None)
         }
@@ -225,21 +226,6 @@ fn list(robots: &[usize]) -> String {
 /// "2→5→7".
 fn chain(robots: &[usize]) -> String {
     joined(robots, "→")
-}
-
-/// "2, 5 and 7".
-fn enumeration(robots: &[usize]) -> String {
-    match robots {
-        [] => "no robot".to_owned(),
-        [first @ .., last] if !first.is_empty() => format!("{} and {last}", joined(first, ", ")),
-        only => joined(only, ""),
-    }
-}
-
-/// "robot 2", "robots 2, 5 and 7".
-pub(crate) fn robots(robots: &[usize]) -> String {
-    let noun = if robots.len() == 1 { "robot" } else { "robots" };
-    format!("{noun} {}", enumeration(robots))
 }
 
 fn joined(robots: &[usize], between: &str) -> String {

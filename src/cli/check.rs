@@ -8,6 +8,7 @@ use super::source::Source;
 use super::status::{Failure, Status};
 use super::sweep::Sweep;
 use super::terminal;
+use pleach::automaton::network::phrase;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Fleet, Remark, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
@@ -106,12 +107,7 @@ fn numbered(noun: &str, numbers: &[usize]) -> String {
     let plural = if numbers.len() == 1 { "" } else { "s" };
     let rows = numbers.chunk_by(|one, next| one + 1 == *next);
     let rows: Vec<String> = rows.flat_map(row).collect();
-    match rows.split_last() {
-        Some((last, first)) if !first.is_empty() => {
-            format!("{noun}{plural} {} and {last}", first.join(", "))
-        }
-        _ => format!("{noun}{plural} {}", rows.concat()),
-    }
+    format!("{noun}{plural} {}", phrase::listed(&rows))
 }
 
 /// The numbers of a row, or its ends if it is long.

@@ -18,7 +18,7 @@ pub mod message;
 pub mod mission;
 pub mod observer;
 pub mod order;
-mod phrase;
+pub mod phrase;
 pub mod record;
 pub mod renumbering;
 pub mod robot;

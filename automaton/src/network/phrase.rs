@@ -1,19 +1,27 @@
 //! Lists of nodes in sentences.
 
+use std::fmt::Display;
+
 /// "robot 3", "robots 3 and 5", "robots 3, 5 and 7"; "no robot" where there is none.
-pub(super) fn named(noun: &str, numbers: &[usize]) -> String {
+pub fn named(noun: &str, numbers: &[usize]) -> String {
     match numbers {
         [] => format!("no {noun}"),
         [only] => format!("{noun} {only}"),
-        [first @ .., last] => {
-            let first: Vec<String> = first.iter().map(usize::to_string).collect();
-            format!("{noun}s {} and {last}", first.join(", "))
-        }
+        several => format!("{noun}s {}", listed(several)),
+    }
+}
+
+/// "3", "3 and 5", "3, 5 and 7"; nothing of nothing.
+pub fn listed<T: Display>(items: &[T]) -> String {
+    let items: Vec<String> = items.iter().map(T::to_string).collect();
+    match &*items {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        few => few.concat(),
     }
 }
 
 /// These robots with the verb that they take, as one robot does and as several do: "robot 3 has", "robots 3 and 5 have".
-pub(super) fn robots(numbers: &[usize], [of_one, of_several]: [&str; 2]) -> String {
+pub fn robots(numbers: &[usize], [of_one, of_several]: [&str; 2]) -> String {
     let verb = if numbers.len() < 2 { of_one } else { of_several };
     format!("{} {verb}", named("robot", numbers))
 }

@@ -397,6 +397,9 @@ mod tests {
         assert_eq!(ensemble.view(3), None);
     }
 
+    /// No node has this number.
+    const NOBODY: NodeId = 1_000;
+
     /// Adds up what it hears, weighted by when, and tells its sum in each of some rounds of one instant.
     #[derive(Clone, Debug, PartialEq)]
     struct Adder {
@@ -426,7 +429,7 @@ mod tests {
                     self.rounds += passed as u64 + 1;
                     outputs.report(self.sum);
                     match self.is_lonely {
-                        true => outputs.send(usize::MAX, self.sum),
+                        true => outputs.send(NOBODY, self.sum),
                         false => outputs.broadcast(self.sum),
                     }
                 }
@@ -448,52 +451,48 @@ mod tests {
         fn body(&self) {}
     }
 
-    /// The same mesh; nobody answers at once.
+    /// A full mesh in which nobody answers at once, so that it offers its messages as mail.
     struct Sorted {
-        audience: Vec<NodeId>,
-        sent: Vec<Envelope<u64>>,
+        mesh: FullMesh<u64>,
+        nodes: Vec<NodeId>,
         mail: Mail<u64>,
     }
 
     impl Medium<u64, ()> for Sorted {
         fn update(&mut self, bodies: &[()]) {
-            self.audience = (0..bodies.len()).collect();
+            self.nodes = (0..bodies.len()).collect();
+            self.mesh.update(bodies);
         }
 
         fn send(&mut self, envelope: Envelope<u64>) {
-            self.sent.push(envelope);
+            Medium::<u64, ()>::send(&mut self.mesh, envelope);
         }
 
         fn time_to_arrival(&self) -> Option<f64> {
-            (!self.sent.is_empty()).then_some(0.0)
+            Medium::<u64, ()>::time_to_arrival(&self.mesh)
         }
 
         fn flow(&mut self, _: f64) {}
 
         fn deliver<E>(
             &mut self,
-            mut hand_over: impl FnMut(Delivery<'_, u64>) -> Result<(), E>,
+            hand_over: impl FnMut(Delivery<'_, u64>) -> Result<(), E>,
         ) -> Result<(), E> {
-            for Envelope { from, to, message } in self.sent.drain(..) {
-                let receivers = receivers_of(&self.audience, to);
-                receivers
-                    .iter()
-                    .try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))?;
-            }
-            Ok(())
+            Medium::<u64, ()>::deliver(&mut self.mesh, hand_over)
         }
 
         fn mail(&mut self) -> Option<&Mail<u64>> {
-            let Sorted { audience, sent, mail } = self;
-            mail.sort(sent, audience.len(), |envelope| receivers_of(audience, envelope.to));
+            let mut sent = Vec::new();
+            let Ok(()) = self.deliver(|Delivery { from, to, message }| {
+                sent.push(Envelope { from, to: Destination::One(to), message: *message });
+                Ok::<(), Infallible>(())
+            });
+            let Sorted { nodes, mail, .. } = self;
+            mail.sort(&mut sent, nodes.len(), |envelope| match envelope.to {
+                Destination::One(to) => nodes.get(to..=to).unwrap_or_default(),
+                Destination::Everyone => nodes,
+            });
             Some(mail)
-        }
-    }
-
-    fn receivers_of(audience: &[NodeId], to: Destination) -> &[NodeId] {
-        match to {
-            Destination::Everyone => audience,
-            Destination::One(_) => &[],
         }
     }
 
@@ -501,31 +500,6 @@ mod tests {
     /// are taken one after another.
     #[test]
     fn mail_is_heard_as_messages_are_that_are_delivered_one_after_another() {
-        struct InTurn(Sorted);
-
-        impl Medium<u64, ()> for InTurn {
-            fn update(&mut self, bodies: &[()]) {
-                self.0.update(bodies);
-            }
-
-            fn send(&mut self, envelope: Envelope<u64>) {
-                self.0.send(envelope);
-            }
-
-            fn time_to_arrival(&self) -> Option<f64> {
-                self.0.time_to_arrival()
-            }
-
-            fn flow(&mut self, _: f64) {}
-
-            fn deliver<E>(
-                &mut self,
-                hand_over: impl FnMut(Delivery<'_, u64>) -> Result<(), E>,
-            ) -> Result<(), E> {
-                self.0.deliver(hand_over)
-            }
-        }
-
         type Outcome = (Vec<Adder>, Vec<TraceEntry<NodeJump>>, Vec<(NodeId, u64)>, Vec<Traffic>);
 
         fn outcome(nodes: &[Adder], medium: impl Medium<u64, ()>, threads: usize) -> Outcome {
@@ -538,11 +512,11 @@ mod tests {
             (ensemble.nodes().to_vec(), trace.entries().to_vec(), reports, traffic)
         }
 
-        let sorted = || Sorted { audience: Vec::new(), sent: Vec::new(), mail: Mail::new() };
+        let sorted = || Sorted { mesh: FullMesh::new(), nodes: Vec::new(), mail: Mail::new() };
         for is_lonely in [false, true] {
             let adder = |id: u64| Adder { sum: id, rounds: 0, is_lonely };
             let nodes: Vec<Adder> = (0..60).map(adder).collect();
-            let in_turn = outcome(&nodes, InTurn(sorted()), 1);
+            let in_turn = outcome(&nodes, FullMesh::new(), 1);
             assert!(in_turn.1.len() >= if is_lonely { 4 } else { 8 });
             assert_eq!(outcome(&nodes, sorted(), 1), in_turn);
             assert_eq!(outcome(&nodes, sorted(), 3), in_turn);

@@ -19,8 +19,8 @@ impl<M> Mail<M> {
         Mail { sent: Vec::new(), letters: Vec::new(), ends: Vec::new() }
     }
 
-    /// Takes these messages in place of those before, and sorts them; `receivers_of` tells which of so many nodes hear
-    /// a message.
+    /// Replaces what it holds by these messages, sorted by receiver. `receivers_of` gives the nodes that hear a message,
+    /// numbered below `nodes`.
     pub fn sort<'a>(
         &mut self,
         messages: &mut Vec<Envelope<M>>,

@@ -7,7 +7,7 @@ use crate::abreast::{abreast, threads};
 
 /// With fewer steps in a round, one thread is as fast as several.
 const FEWEST_STEPS_FOR_THREADS: usize = 2_000;
-/// Each thread takes so many rows, one after another: none waits long for another.
+/// The number of rows for each thread. With several, no thread waits long for another.
 const ROWS_PER_THREAD: usize = 4;
 
 /// Nodes, with what the ensemble keeps of each.
@@ -183,7 +183,7 @@ impl<M> Steps<'_, M> {
 }
 
 impl Seat {
-    /// The node hears so many messages of a delivery.
+    /// The node hears this many messages in a delivery.
     const fn hear(&mut self, delivery: usize, messages: usize) {
         self.heard = delivery;
         self.traffic.heard += messages as u64;

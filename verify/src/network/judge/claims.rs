@@ -254,7 +254,7 @@ pub(super) fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<()
 /// With the strategy of the paper the primary team stands still while Σ is walked.
 fn goes_on(mover: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
     let strategy = scene.limits.settings().strategy;
-    let waits = ledger.stage() == Stage::Shifting && ledger.is_of_calling_team(mover);
+    let waits = ledger.stage() == Stage::Shifting && ledger.primary_team.contains(&mover);
     if strategy == Strategy::Eager || !waits {
         return Ok(());
     }

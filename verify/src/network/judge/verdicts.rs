@@ -45,27 +45,6 @@ pub struct Trial {
     pub snapshot: Snapshot,
 }
 
-impl Trial {
-    /// The call that is under way by the ledger, given up after this instant; none if no robot calls.
-    fn of(
-        ledger: &Ledger,
-        led_from: Option<usize>,
-        snapshot: &Snapshot,
-        then: Then,
-    ) -> Option<Self> {
-        let caller = *ledger.primary_team.first()?;
-        (ledger.stage() == Stage::Calling).then(|| Trial {
-            caller,
-            team: ledger.primary_team.clone(),
-            led_from,
-            releases_leader: ledger.awaits_release,
-            stretched: ledger.stretched,
-            then,
-            snapshot: snapshot.clone(),
-        })
-    }
-}
-
 impl Tried {
     /// An event, with the ledger before it and the snapshots before and after.
     pub fn enter(&mut self, event: &MissionEvent, ledger: &Ledger, scenes: [Option<&Snapshot>; 2]) {
@@ -100,7 +79,16 @@ impl Tried {
 
     /// The call that is under way by the ledger, given up after this instant; none if no robot calls.
     pub fn trial(&self, ledger: &Ledger, snapshot: &Snapshot, then: Then) -> Option<Trial> {
-        Trial::of(ledger, self.led_from, snapshot, then)
+        let caller = *ledger.primary_team.first()?;
+        (ledger.stage() == Stage::Calling).then(|| Trial {
+            caller,
+            team: ledger.primary_team.clone(),
+            led_from: self.led_from,
+            releases_leader: ledger.awaits_release,
+            stretched: ledger.stretched,
+            then,
+            snapshot: snapshot.clone(),
+        })
     }
 
     /// The calls that no robot could answer since the task was announced, but for one that ended the mission.
