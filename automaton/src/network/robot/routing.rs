@@ -316,7 +316,7 @@ impl Robot {
         if self.has_untold_flows {
             self.told_outflow = self.outflow();
         }
-        debug_assert!(self.outflow_stands(), "robot {} overlooks a change of its flows", self.id);
+        debug_assert!(self.may_skip(Self::outflow_stands), "robot {} overlooks its flows", self.id);
         let residual = self.told_outflow - self.inflow - self.rate;
         let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
         match &mut self.routing {

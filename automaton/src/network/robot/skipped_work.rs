@@ -2,13 +2,27 @@
 //! where something has changed.
 //!
 //! That is right if doing it would change nothing. Builds with debug assertions look wherever guards,
-//! facts, a beacon or links are left out; with the feature `abstraction`, also whether processing messages again, on a
-//! copy, would change anything. Explorers ask that of every state of a robot.
+//! facts, a beacon or links are left out, in one control period in [`PERIODS_PER_CHECK`]; with the feature
+//! `abstraction`, also whether processing messages again, on a copy, would change anything. Explorers ask that of
+//! every state of a robot.
 
 use super::Robot;
 use crate::located::Place as _;
 
+/// What is left out in missions is looked at in one control period in this many: it costs as much as doing it.
+const PERIODS_PER_CHECK: u32 = 4;
+
 impl Robot {
+    /// Whether what is left out is looked at in this period.
+    pub(super) fn is_looked_at(&self) -> bool {
+        self.period.is_multiple_of(PERIODS_PER_CHECK)
+    }
+
+    /// Whether something that would change nothing is left out, as far as it is looked at.
+    pub(super) fn may_skip(&self, changes_nothing: impl FnOnce(&Self) -> bool) -> bool {
+        !self.is_looked_at() || changes_nothing(self)
+    }
+
     /// Whether its facts are as it has measured them, and no guard holds.
     pub(super) fn facts_stand(&self) -> bool {
         self.facts_now() == self.facts && self.is_at_rest()
