@@ -24,6 +24,12 @@ pub fn shifts() -> Predicate {
     free_to_move(proposition("in_active_subgroup") & proposition("off_place_ahead"))
 }
 
+/// Its subgroup of Σ is the active team, and it has yet to change over to another access point on its way to the
+/// place ahead.
+pub fn changes_over() -> Predicate {
+    shifts() & proposition("before_changeover")
+}
+
 /// The primary team is the active team or, where recruits are called for ahead of a standstill, goes on while
 /// one is sought and comes.
 fn team_goes_on() -> Predicate {

@@ -220,6 +220,8 @@ facts! {
             in_active_subgroup: robot.active_subgroup().is_some(),
             /// It is off the place ahead on Σ.
             off_place_ahead: robot.is_off_place_ahead(),
+            /// It has yet to change over to another access point on its way to the place ahead on Σ.
+            before_changeover: robot.next_of_crossing().is_some(),
             /// The primary team is the active team.
             advances: robot.phase() == Phase::Advance,
             /// Recruits are called for ahead of a standstill.

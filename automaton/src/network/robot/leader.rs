@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Bid, Election, NodeId};
+use pleach_discrete::network::{Bid, Election, NodeId, Phase};
 
 use super::super::beacon::{Announced, Notice};
 use super::super::mission::{Advance, LeaderElection};
@@ -50,7 +50,7 @@ pub(super) fn learn<A: Clone>(phase: &A, robot: &Robot, effects: &mut Effects) -
 
 /// Every token is known: the winner leads, at once or after it has been released.
 pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects) -> Advance {
-    effects.push(MissionEffect::LedFrom(robot.root_of_winner()));
+    effects.extend(robot.learns_who_leads());
     if robot.winner() == Some(robot.id) {
         let conflict = robot.duty.is_bound();
         if let Some(task) = robot.current_task() {
@@ -133,6 +133,13 @@ impl Robot {
             is_newer.then_some(announced)
         });
         newer.max_by_key(|(id, _)| *id)
+    }
+
+    /// As it leaves the election of a leader: that it knows in whose tree that was elected. It may hear of what the
+    /// leader does next before it knows every token.
+    pub(super) fn learns_who_leads(&self) -> Option<MissionEffect> {
+        let is_electing = self.phase() == Phase::LeaderElection;
+        is_electing.then(|| MissionEffect::LedFrom(self.root_of_winner()))
     }
 
     /// The access point in whose tree the winner of the leader election is that this robot takes part in; none where

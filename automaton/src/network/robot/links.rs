@@ -134,11 +134,23 @@ impl Robot {
                 .robot_at(place + 1)
                 .or_else(|| self.holder(path.hops.get(place + 1)?.post.id).map(Neighbour::id));
         }
+        self.nearest_of(&hop.crossing).map(|access| self.site.robots + access)
+    }
+
+    /// The access points that the robot passes on its way to the place ahead on Σ, where it goes up the tree.
+    pub(super) fn crossing(&self) -> Option<&[usize]> {
+        let Duty::Shifting(Shifting { place, .. }) = *self.duty else { return None };
+        let shift = self.mission.shift()?;
+        let goes_up = !shift.path.descends(shift.active()?.first);
+        shift.path.hops.get(place).filter(|_| goes_up).map(|hop| hop.crossing.as_slice())
+    }
+
+    /// The nearest of these access points.
+    pub(super) fn nearest_of(&self, access_points: &[usize]) -> Option<usize> {
         let distance =
             |&access: &usize| self.site.distance(self.position, self.site.access_points[access]);
-        let nearest =
-            hop.crossing.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()?;
-        Some(self.site.robots + nearest)
+        let by_distance = |a: &&usize, b: &&usize| distance(a).total_cmp(&distance(b));
+        access_points.iter().min_by(by_distance).copied()
     }
 
     /// The robot of the chain that stands for a post whose holder has left it. That of a robot that is not under

@@ -19,6 +19,7 @@ use super::mission::{Effects, MissionEffect};
 pub(super) fn vote<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<PathAgreement> {
     let Notice::Path(path) = robot.notice() else { return None };
     let agreement = robot.vote_on(path, robot.notice_id());
+    effects.extend(robot.learns_who_leads());
     effects.push(MissionEffect::Agree(Some(agreement)));
     Some(PathAgreement { path: Arc::clone(path) })
 }
@@ -60,6 +61,7 @@ pub(super) fn announce_advance(shift: &Shift, robot: &Robot, effects: &mut Effec
 
 /// The primary team is the active team again.
 pub(super) fn resume<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Advance {
+    effects.extend(robot.learns_who_leads());
     effects.push(MissionEffect::Restart);
     Advance { path: robot.mission.path().cloned(), in_vain: robot.learns_that_call_is_vain() }
 }

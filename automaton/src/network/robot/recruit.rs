@@ -54,6 +54,7 @@ pub(super) fn call_ahead(
 /// A recruit is called for.
 pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitElection {
     let id = robot.notice_id();
+    effects.extend(robot.learns_who_leads());
     let is_caller = matches!(*robot.notice(),
         Notice::Call { caller, .. } if caller == robot.id);
     let route = is_caller.then(|| robot.own_route(id)).flatten();

@@ -20,6 +20,7 @@ pub fn targets() -> Targets {
         Waiting,
     };
     let laws = Laws::of("ψ")
+        .case(Shifting, guards::changes_over(), "next access point on Σ", Robot::next_of_crossing)
         .case(Shifting, guards::shifts(), "place ahead on Σ", Robot::reference_ahead)
         .case(Following, guards::follows(), "robot ahead", Robot::team_goal)
         .case(Leading, guards::leads(), "task", Robot::team_goal);
@@ -50,6 +51,15 @@ impl Robot {
 
     fn reference_ahead(&self) -> Option<Point> {
         self.next_hop().map(|hop| hop.place.reference)
+    }
+
+    /// The access point to which it changes over next on its way along Σ. Its link to the one before is longest on the
+    /// way between the two.
+    pub(super) fn next_of_crossing(&self) -> Option<Point> {
+        let crossing = self.crossing()?;
+        let nearest = self.nearest_of(crossing)?;
+        let mut onward = crossing.iter().skip_while(|&&access| access != nearest);
+        onward.nth(1).map(|&access| self.site.access_points[access])
     }
 
     pub(super) fn is_off_post(&self) -> bool {

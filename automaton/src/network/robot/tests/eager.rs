@@ -24,13 +24,6 @@ fn leader(strategy: Strategy, away: f64) -> Robot {
     robot
 }
 
-/// The phase of the mission after a step, if one is taken.
-fn next_phase(robot: &mut Robot) -> Phase {
-    robot.measures();
-    robot.jump_mission().expect("its guards have values");
-    robot.phase()
-}
-
 /// How far away the task may be that a leader alone reaches.
 fn reach_alone() -> f64 {
     let robot = leader(Strategy::Eager, 1.0);

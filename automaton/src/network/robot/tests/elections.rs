@@ -3,6 +3,7 @@
 
 use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
+use super::super::super::duty::Path;
 use super::super::super::mission::{Idle, LeaderElection, RecruitElection, Standstill};
 use super::*;
 
@@ -371,6 +372,28 @@ fn who_has_been_asked_is_not_asked_again_because_the_team_is_in_another_tree() {
     assert_eq!(next(&[0, 1], Some(0)), Some(vec![1]));
     assert_eq!(next(&[1, 2], Some(1)), Some(vec![2]));
     assert_eq!((next(&[1], Some(1)), next(&[1], None)), (None, None));
+}
+
+/// What the leader does next is heard before every token is known where it is nearer than some of those who elect.
+#[test]
+fn a_robot_that_hears_of_the_leader_first_knows_in_whose_tree_that_was_elected() {
+    let mut hall = hall();
+    hall.access_point.push(AccessPoint { position: east(3.0).into() });
+    let led_from = |notice: Notice| {
+        let mut robot = Robot { led_from: Some(0), ..robot_of(&hall) };
+        robot.knows_task(east(3.0));
+        robot.mission = Current::new(Mission::LeaderElection(LeaderElection));
+        let mut election = Election::new(robot.notice_id());
+        election.place(4, Some(Bid { rank: 1, merit: -2, economy: -1 }));
+        robot.election = Some(Arc::new(election));
+        robot.is_told(notice);
+        (next_phase(&mut robot), robot.led_from)
+    };
+    let path = Path { hops: Vec::new(), releases_leader: true };
+    assert_eq!(led_from(Notice::Advance { joined: None }), (Phase::Advance, Some(1)));
+    let call = Notice::Call { caller: 4, releases_leader: true };
+    assert_eq!(led_from(call), (Phase::RecruitElection, Some(1)));
+    assert_eq!(led_from(Notice::Path(Arc::new(path))), (Phase::PathAgreement, Some(1)));
 }
 
 /// Robots of other trees that have been asked before links were stretched may be able to go there now.

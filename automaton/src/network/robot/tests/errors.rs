@@ -151,6 +151,31 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     assert!(!last.has_arrived(), "the break point at the end is of another subgroup");
 }
 
+/// Where Σ leads over two access points its link is longest on the way between these, whatever way is shorter.
+#[test]
+fn a_recruit_goes_by_way_of_the_access_points_that_its_path_passes() {
+    let mut hall = hall();
+    let access_point = |away| AccessPoint { position: east(away).into() };
+    hall.access_point = [0.0, 1.0, 2.0].map(access_point).to_vec();
+    let target = |crossing: &[usize], away: f64| {
+        let mut robot = Robot { site: robot_of(&hall).site, ..shifting(0.5, false) };
+        let Mission::Shift(shift) = &*robot.mission else { panic!("it is on its way") };
+        let mut path = Path::clone(&shift.path);
+        path.hops[0].crossing = crossing.to_vec();
+        let shift = Shift { path: Arc::new(path), ..shift.clone() };
+        robot.mission = Current::new(Mission::Shift(shift));
+        robot.position = HERE + Vector::new(away, 0.3);
+        robot.measures();
+        robot.goal()
+    };
+    assert_eq!(target(&[], 0.1), Some(east(1.0)), "the place ahead");
+    assert_eq!(target(&[0, 2], 0.9), Some(east(2.0)));
+    assert_eq!(target(&[0, 2], 1.1), Some(east(1.0)), "the second is nearer");
+    assert_eq!(target(&[0, 1, 2], 0.4), Some(east(1.0)), "one after the other");
+    assert_eq!(target(&[0, 1, 2], 0.6), Some(east(2.0)));
+    assert_eq!(target(&[0], 0.1), Some(east(1.0)), "both robots are attached there");
+}
+
 /// One that queues behind the next holds the post where it stands.
 #[test]
 fn a_post_is_held_at_its_place_by_a_robot_that_has_come_there() {

@@ -21,14 +21,14 @@ mod yielding;
 use std::sync::Arc;
 
 use pleach_continuous::{Point, Vector};
-use pleach_discrete::network::{Anchor, Lineage, NodeId, Post, PostId, PostKind};
+use pleach_discrete::network::{Anchor, Lineage, NodeId, Phase, Post, PostId, PostKind};
 use serde_json::json;
 
 use super::super::beacon::{Announcement, Beacon, Notice};
 use super::super::duty::{Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station};
 use super::super::mission::{Advance, Ended, Mission, Shift};
 use super::super::roll::Roll;
-use super::super::scenario::Scenario;
+use super::super::scenario::{AccessPoint, Scenario};
 use super::super::shared::Shared;
 use super::super::site::Site;
 use super::Robot;
@@ -86,6 +86,13 @@ fn robot() -> Robot {
 fn post(id: u32, kind: PostKind, parent: Option<u32>) -> Post {
     let parent = parent.map(|parent| Anchor::Post(PostId(parent)));
     Post { kind, parent, ..Post::redundant(PostId(id)) }
+}
+
+/// The phase of the mission after a step, if one is taken.
+fn next_phase(robot: &mut Robot) -> Phase {
+    robot.measures();
+    robot.jump_mission().expect("its guards have values");
+    robot.phase()
 }
 
 /// The post of a redundant robot, attached to post `parent`.
