@@ -134,7 +134,8 @@ impl Robot {
                 .robot_at(place + 1)
                 .or_else(|| self.holder(path.hops.get(place + 1)?.post.id).map(Neighbour::id));
         }
-        self.nearest_of(&hop.crossing).map(|access| self.site.robots + access)
+        let access = hop.crossing.get(self.place_in_crossing(&hop.crossing))?;
+        Some(self.site.robots + access)
     }
 
     /// The access points that the robot passes on its way to the place ahead on Σ, where it goes up the tree.
@@ -145,12 +146,16 @@ impl Robot {
         shift.path.hops.get(place).filter(|_| goes_up).map(|hop| hop.crossing.as_slice())
     }
 
-    /// The nearest of these access points.
-    pub(super) fn nearest_of(&self, access_points: &[usize]) -> Option<usize> {
+    /// To which of the access points that it passes one after the other it is attached: to the last to which a link may
+    /// be made, and to none before the one to which it has been attached.
+    pub(super) fn place_in_crossing(&self, crossing: &[usize]) -> usize {
         let distance =
-            |&access: &usize| self.site.distance(self.position, self.site.access_points[access]);
-        let by_distance = |a: &&usize, b: &&usize| distance(a).total_cmp(&distance(b));
-        access_points.iter().min_by(by_distance).copied()
+            |access: usize| self.site.distance(self.position, self.site.access_points[access]);
+        let parent = self.parent.and_then(|node| node.checked_sub(self.site.robots));
+        let reached = parent.and_then(|parent| crossing.iter().position(|&it| it == parent));
+        let may_attach = |&place: &usize| self.may_build(distance(crossing[place]));
+        let first = reached.unwrap_or(0);
+        (first..crossing.len()).rfind(may_attach).unwrap_or(first)
     }
 
     /// The robot of the chain that stands for a post whose holder has left it. That of a robot that is not under

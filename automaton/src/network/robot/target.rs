@@ -53,13 +53,12 @@ impl Robot {
         self.next_hop().map(|hop| hop.place.reference)
     }
 
-    /// The access point to which it changes over next on its way along Σ. Its link to the one before is longest on the
-    /// way between the two.
+    /// The access point to which it changes over next on its way along Σ: on a shorter way to the place ahead it might
+    /// be out of reach of both.
     pub(super) fn next_of_crossing(&self) -> Option<Point> {
         let crossing = self.crossing()?;
-        let nearest = self.nearest_of(crossing)?;
-        let mut onward = crossing.iter().skip_while(|&&access| access != nearest);
-        onward.nth(1).map(|&access| self.site.access_points[access])
+        let next = crossing.get(self.place_in_crossing(crossing) + 1)?;
+        Some(self.site.access_points[*next])
     }
 
     pub(super) fn is_off_post(&self) -> bool {

@@ -9,7 +9,7 @@ use pleach_continuous::network::LinkReliability;
 use super::super::robot::ROUNDS_TO_BE_HEARD;
 use super::buckets::Buckets;
 use super::placement::key_of_repair;
-use super::{Fleet, KeyPath, ValidScenario};
+use super::{Fleet, KeyPath, Settings, ValidScenario};
 use crate::network::Site;
 
 /// Something about a valid scenario that its author may not have meant.
@@ -51,6 +51,11 @@ pub enum Remark {
         period: u32,
         /// The number of control periods; the last has the number before it.
         max_steps: usize,
+    },
+    /// A control period may end amid an exchange of duties, and the mission is judged as one with late messages.
+    ShortPeriods {
+        /// How many rounds it has.
+        rounds: usize,
     },
     /// A control period has so few rounds that beacons are not repeated as often as they are otherwise.
     FewRounds {
@@ -100,7 +105,9 @@ impl Remark {
                     Late::Withdrawn => "withdrawn",
                 })
             }
-            Remark::FewRounds { .. } => KeyPath::root().key("control").key("rounds_per_period"),
+            Remark::ShortPeriods { .. } | Remark::FewRounds { .. } => {
+                KeyPath::root().key("control").key("rounds_per_period")
+            }
         }
     }
 }
@@ -149,6 +156,12 @@ impl fmt::Display for Remark {
                      {max_steps}"
                 )
             }
+            Remark::ShortPeriods { rounds } => write!(
+                formatter,
+                "{rounds}, and an exchange of duties takes up to {}: where a control period ends before one, what \
+                 nodes know differs, so that the mission is held against what no fault may break, and no more",
+                Settings::ROUNDS_OF_AN_EXCHANGE
+            ),
             Remark::FewRounds { rounds } => write!(
                 formatter,
                 "{rounds} where {ROUNDS_TO_BE_HEARD} repeat each beacon as often as is useful: with fewer, \
@@ -192,12 +205,15 @@ impl ValidScenario {
         let (links, crossing) = self.count_links();
         let walls = (crossing > 0).then_some(Remark::ThroughWalls { crossing, links });
         let rounds = site.settings.rounds_per_period;
+        let short =
+            (!site.settings.has_rounds_for_exchanges()).then_some(Remark::ShortPeriods { rounds });
         let few = (rounds < ROUNDS_TO_BE_HEARD).then_some(Remark::FewRounds { rounds });
         tasks
             .chain(self.late_remarks())
             .chain(outline)
             .chain(long)
             .chain(walls)
+            .chain(short)
             .chain(few)
             .collect()
     }

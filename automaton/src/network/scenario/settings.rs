@@ -59,12 +59,21 @@ impl Settings {
     const MAX_STEPS: usize = 20_000;
     const PERIOD: f64 = 1.0;
     const ROUNDS_PER_PERIOD: usize = 8;
+    /// Rounds in which an exchange of duties that begins in a control period ends: the offer, the reply, the two duties
+    /// taken, and one in which others hear of it.
+    pub const ROUNDS_OF_AN_EXCHANGE: usize = 5;
     const ROUTING_ITERATIONS: usize = 5;
     const ROUTING_RESERVE: f64 = 0.02;
     const SLOPE_AVERSION: f64 = 10.0;
     const TREE_RELIABILITY: f64 = 0.1;
     /// The reliability from which on a shorter link is hardly a better one.
     pub const GOOD_RELIABILITY: f64 = 0.8;
+
+    /// Whether an exchange of duties ends in the control period in which it begins. Otherwise nodes know different
+    /// things when the period ends, as they do where messages are late.
+    pub const fn has_rounds_for_exchanges(&self) -> bool {
+        self.rounds_per_period >= Self::ROUNDS_OF_AN_EXCHANGE
+    }
 
     /// The settings of `scenario`: what its `[control]` states, defaults for the rest.
     pub fn resolve(scenario: &Scenario) -> Self {

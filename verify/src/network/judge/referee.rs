@@ -11,7 +11,7 @@ use crate::network::extremes::Extremes;
 use crate::network::violation::Violation;
 
 /// The judge of a mission: by all definitions where nothing fails, and otherwise by what no fault may
-/// break.
+/// break. Where control periods are too short for an exchange of duties, messages count as late.
 #[derive(Clone, Debug)]
 pub enum Referee<'a> {
     /// Of a mission without faults.
@@ -42,6 +42,8 @@ impl<'a> Referee<'a> {
         faults: Faults,
         role_table: impl Fn(Role, Role) -> bool + 'a,
     ) -> Self {
+        let is_short = !scenario.site().settings.has_rounds_for_exchanges();
+        let faults = Faults { messages: faults.messages || is_short, ..faults };
         match faults.are_none() {
             true => Referee::Whole(Box::new(Judge::new(scenario, role_table))),
             false => Referee::Safety(Box::new(Safety::new(scenario, faults))),
