@@ -67,15 +67,10 @@ pub fn caption(event: &MissionEvent) -> Option<Caption> {
 }
 
 /// Whether an event moves the story on. Changes of a single robot's role or place in the tree
-/// are details.
+/// are details; an exchange of duties changes a team.
 #[must_use]
 pub fn is_telling(event: &MissionEvent) -> bool {
-    !matches!(
-        event,
-        MissionEvent::RoleChanged { .. }
-            | MissionEvent::Reattached { .. }
-            | MissionEvent::DutiesExchanged { .. }
-    )
+    !matches!(event, MissionEvent::RoleChanged { .. } | MissionEvent::Reattached { .. })
 }
 
 /// The task that an event names, if it makes a moment.

@@ -189,7 +189,10 @@ pub(crate) fn step_line(snapshot: &Snapshot) -> serde_json::Result<Map<String, V
 
 fn parse(number: usize, text: io::Result<String>) -> Result<Line, TraceError> {
     let text = text.map_err(|source| TraceError::Unreadable { line: number, source })?;
-    serde_json::from_str(&text).map_err(|source| TraceError::NotALine { line: number, source })
+    serde_json::from_str(&text).map_err(|source| match number {
+        1 if !source.is_eof() => TraceError::NotATrace { source },
+        line => TraceError::NotALine { line, source },
+    })
 }
 
 /// Why a text is not a trace. Lines are counted from 1.
@@ -203,6 +206,12 @@ pub enum TraceError {
     /// The text cannot be read further.
     #[error("line {line}: cannot be read: {source}")]
     Unreadable { line: usize, source: io::Error },
+    /// The first line is none of a trace.
+    #[error(
+        "this is no trace, whose first line is the header that `pleach run --trace FILE` writes: {}",
+        within_line(source)
+    )]
+    NotATrace { source: serde_json::Error },
     /// Not one of the four kinds of line.
     #[error("line {line}: not a line of a trace: {}", within_line(source))]
     NotALine { line: usize, source: serde_json::Error },

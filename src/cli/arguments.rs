@@ -71,7 +71,8 @@ pub enum Command {
     /// may break.
     Judge(JudgeArguments),
     /// Turn a trace into an MCAP recording, which Foxglove plays
-    #[cfg(feature = "mcap")]
+    ///
+    /// In a program that is built with the feature `mcap`.
     Export {
         /// The trace, as `pleach run --trace` writes it
         trace: PathBuf,
@@ -118,7 +119,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<Sweep>,
     /// Run every scenario COUNT times, each time with robots at other random starts
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "COUNT", allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub repeat: Option<u64>,
     /// The seed of the first random starts; each repeat takes the next one
     #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "repeat")]
@@ -127,7 +129,8 @@ pub struct RunArguments {
     #[command(flatten)]
     pub faults: FaultArguments,
     /// Run up to COUNT missions at once [default: one for each processor]
-    #[arg(long, short, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, short, value_name = "COUNT", allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
     /// Write what happens to FILE, one JSON object per line; with several runs FILE is a folder
     #[arg(long, value_name = "FILE")]
@@ -142,8 +145,7 @@ pub struct RunArguments {
     /// Write figures without titles, for papers with captions of their own
     #[arg(long)]
     pub plain: bool,
-    /// Write each figure as PDF, too
-    #[cfg(feature = "pdf")]
+    /// Write each figure as PDF, too; in a program that is built with the feature `pdf`
     #[arg(long, conflicts_with = "no_figures")]
     pub pdf: bool,
     /// Write a table of the runs to FILE as comma-separated values

@@ -41,6 +41,8 @@ pub fn carry_out(command: Command) -> ExitCode {
         Command::Import(import) => import::import(&import),
         #[cfg(feature = "mcap")]
         Command::Export { trace, recording } => export::export(&trace, &recording),
+        #[cfg(not(feature = "mcap"))]
+        Command::Export { .. } => Err(Failure::Without { what: "export", feature: "mcap" }),
         Command::Judge(judge) => judge::run(&judge),
         Command::Diagram(diagram) => diagram::print(&diagram),
         Command::Completions { shell } => manual::print_completions(shell),

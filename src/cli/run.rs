@@ -42,7 +42,6 @@ fn run_one(
         figures: (!arguments.no_figures)
             .then(|| arguments.figures.clone().unwrap_or_else(default_folder)),
         plain: arguments.plain,
-        #[cfg(feature = "pdf")]
         pdf: arguments.pdf,
     };
     let mut progress = Progress::new(&run.scenario, arguments.quiet);
@@ -90,7 +89,6 @@ fn run_many(
             trace: arguments.trace.as_ref().map(|folder| folder.join(format!("{name}.jsonl"))),
             figures: arguments.figures.as_ref().map(|folder| folder.join(name)),
             plain: arguments.plain,
-            #[cfg(feature = "pdf")]
             pdf: arguments.pdf,
         }
     };

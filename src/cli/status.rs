@@ -85,6 +85,16 @@ pub enum Failure {
         /// How many are possible.
         most: usize,
     },
+    /// The program is built without what the arguments ask for.
+    #[error(
+        "{what}: this program is built without it; build one with cargo build --release --features {feature}"
+    )]
+    Without {
+        /// The argument or the command.
+        what: &'static str,
+        /// The feature of the package.
+        feature: &'static str,
+    },
     /// Arguments that contradict each other.
     #[error("{0}")]
     Usage(String),
@@ -159,6 +169,7 @@ impl Failure {
             | Failure::NoScenarios { .. }
             | Failure::TooManyRuns { .. }
             | Failure::Usage(_)
+            | Failure::Without { .. }
             | Failure::Starts(_)
             | Failure::Import(_)
             | Failure::Skeleton(_)

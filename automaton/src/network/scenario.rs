@@ -48,8 +48,10 @@ pub struct Scenario {
     #[serde(default)]
     pub control: Control,
     /// The fixed access points.
+    #[serde(default)]
     pub access_point: Vec<AccessPoint>,
     /// The robots where they start.
+    #[serde(default)]
     pub robot: Vec<RobotStart>,
     /// The tasks, in order of announcement.
     #[serde(default)]

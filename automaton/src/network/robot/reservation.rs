@@ -14,9 +14,6 @@
 //! leaves flows as they are. A grant answers one request, and a new request voids the grants before it,
 //! so that late messages and copies change nothing.
 //!
-//! Two robots do not send to each other: both flows would last as long as the other at the most, and end together. A
-//! robot raises no flow to one that may send to it.
-//!
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
 //! where grants are not renewed, flows end at those who send first.
 
@@ -136,11 +133,6 @@ impl HeldFlow {
         self.wanted.min(self.granted)
     }
 
-    /// The flow is not raised any more in this period.
-    fn stays(&mut self) {
-        self.wanted = self.wanted.min(self.flow);
-    }
-
     fn can_rise(&self) -> bool {
         self.allowed() > self.flow
     }
@@ -207,10 +199,7 @@ impl Robot {
             let to = link.to;
             // Where flows are not reported, the plan can be none.
             let planned = link.flow().clamp(0.0, link.reliability);
-            let can_raise = planned != 0.0
-                && knows_load
-                && self.knows_place_of(to)
-                && !self.senders().any(|sender| sender == to);
+            let can_raise = planned != 0.0 && knows_load && self.knows_place_of(to);
             if to >= robots {
                 // An access point takes everything, as long as it is there.
                 let heard_in = self.neighbour(to).map_or(0, |known| known.heard_in);
@@ -321,7 +310,7 @@ impl Robot {
             let held = &mut self.links[at].held;
             if held.allowed() > held.flow + SAME_FLOW {
                 // There is no room for more in this period.
-                held.stays();
+                held.wanted = held.flow;
             }
             let is_due = std::mem::take(&mut held.is_due) || held.can_be_given_back();
             if is_due && self.links[at].to < self.site.robots {
@@ -376,9 +365,6 @@ impl Robot {
             if can_grant {
                 spare.grant(kept.flow, flow);
                 kept.flow = flow;
-                if let Some(at) = link_at(&self.links, kept.from) {
-                    self.links[at].held.stays();
-                }
             }
             if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
                 kept.until = renewed(kept.until, until);

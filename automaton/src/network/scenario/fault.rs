@@ -120,18 +120,24 @@ pub enum Problem {
          least {least}", told_margin(*margin)
     )]
     ServiceRadiusTooSmall { service_radius: f64, clearance: f64, margin: f64, least: f64 },
+    /// ρ so large that robots out of range of each other could touch.
+    #[error(
+        "{clearance} is too large for max_range = {max_range}: robots that cannot hear each other \
+         stay 2 clearances apart and move, so it must be less than {}", short(*most)
+    )]
+    ClearanceTooLarge { clearance: f64, max_range: f64, most: f64 },
     /// σ > (u − 2ρ)/2 (footnote 6).
     #[error(
-        "{step_radius} is too long a step: robots that cannot hear each other could meet \
-         within one period, so at most (max_range − 2 clearance)/2 = {most}"
+        "{} is too long a step: robots that cannot hear each other could meet within one \
+         period, so at most (max_range − 2 clearance)/2 = {}", short(*step_radius), short(*most)
     )]
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.
     #[error(
         "no link can be added to the tree: a reliability of {build_reliability} is reached \
-         at distance {longest:.6}, and robots may stand service_radius = {service_radius} \
-         away from their posts; lower this reliability or service_radius, or raise \
-         full_range"
+         at distance {}, and robots may stand service_radius = {} away from their posts; lower \
+         this reliability or service_radius, or raise full_range",
+        short(*longest), short(*service_radius)
     )]
     TreeLinksTooShort { build_reliability: f64, longest: f64, service_radius: f64 },
     /// Links would be too weak as soon as they are made.

@@ -52,6 +52,8 @@ pub enum Remark {
         /// The number of control periods; the last has the number before it.
         max_steps: usize,
     },
+    /// Nothing is to be done.
+    NoTask,
     /// A control period may end amid an exchange of duties, and the mission is judged as one with late messages.
     ShortPeriods {
         /// How many rounds it has.
@@ -105,6 +107,7 @@ impl Remark {
                     Late::Withdrawn => "withdrawn",
                 })
             }
+            Remark::NoTask => KeyPath::root().key("task"),
             Remark::ShortPeriods { .. } | Remark::FewRounds { .. } => {
                 KeyPath::root().key("control").key("rounds_per_period")
             }
@@ -156,6 +159,9 @@ impl fmt::Display for Remark {
                      {max_steps}"
                 )
             }
+            Remark::NoTask => {
+                formatter.write_str("there is none: the mission ends at once; add [[task]]")
+            }
             Remark::ShortPeriods { rounds } => write!(
                 formatter,
                 "{rounds}, and an exchange of duties takes up to {}: where a control period ends before one, what \
@@ -197,7 +203,8 @@ impl Site {
 impl ValidScenario {
     /// Everything worth a remark, places and times of tasks first, then the outline.
     pub fn remarks(&self) -> Vec<Remark> {
-        let tasks = self.task_remarks().into_iter();
+        let none = self.task.is_empty().then_some(Remark::NoTask);
+        let tasks = none.into_iter().chain(self.task_remarks());
         let site = self.site();
         let outline = site.repairs.iter().cloned().map(Remark::Outline);
         let mut sites = [self].into_iter().chain(self.fleets().iter().map(Fleet::scenario));

@@ -299,6 +299,12 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
         service_radius, step_radius, build_reliability, tree_reliability, errors, ..
     } = settings;
     let clearance = settings.planning_clearance();
+    let widest = (max_range - settings.link_margin()) / 2.0;
+    if clearance >= widest {
+        let most = widest - (clearance - settings.clearance);
+        let problem = Problem::ClearanceTooLarge { clearance: settings.clearance, max_range, most };
+        return vec![problem.at(control_key("clearance"))];
+    }
     let margin = clearance - settings.clearance;
     let least =
         LEAST_SERVICE_RADIUS_IN_CLEARANCES * clearance + errors.stray() + 2.0 * errors.motion;

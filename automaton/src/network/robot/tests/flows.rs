@@ -191,41 +191,6 @@ fn a_request_is_answered_once_and_an_older_one_never() {
     );
 }
 
-/// Two flows between the same robots would last as long as each other at the most, and end together.
-#[test]
-fn a_robot_raises_no_flow_to_one_that_may_send_to_it() {
-    let asks = |may_send: bool| {
-        let (mut robot, _) = granted(0.3);
-        if !may_send {
-            robot.reservations.clear();
-        }
-        robot.links[0].share = 0.2;
-        let mut outputs = Outputs::of(0);
-        robot.ask_for_flows(&mut outputs);
-        !requests(&mut outputs).is_empty()
-    };
-    assert!(asks(false) && !asks(true));
-    // Both have asked before either has heard of the other's request.
-    let sends = |is_asked: bool| {
-        let mut robot = router();
-        let mut outputs = Outputs::of(0);
-        robot.links[0].share = 0.2;
-        robot.links[1].share = 0.4 / robot.links[1].reliability;
-        robot.ask_for_flows(&mut outputs);
-        let number = requests(&mut outputs).first().expect("it asks").1.number;
-        if is_asked {
-            let number = RequestNumber { period: NOW, number: 1 };
-            robot.hear_request(5, FlowRequest { number, held: 0.0, wanted: 0.1 });
-            robot.take_in_requests(&mut outputs);
-            assert!(robot.senders().eq([5]), "there is enough to spare");
-        }
-        robot.hear_grant(5, FlowGrant { number, flow: 0.2, until: NOW + LEASE });
-        robot.take_in_requests(&mut outputs);
-        robot.sends_to(5)
-    };
-    assert!(sends(false) && !sends(true));
-}
-
 #[test]
 fn grants_end_with_their_lease() {
     let (mut robot, _) = granted(0.3);
