@@ -67,7 +67,7 @@ pub fn caption(event: &MissionEvent) -> Option<Caption> {
 }
 
 /// Whether an event moves the story on. Changes of a single robot's role or place in the tree
-/// are details; an exchange of duties changes a team.
+/// are details.
 #[must_use]
 pub fn is_telling(event: &MissionEvent) -> bool {
     !matches!(event, MissionEvent::RoleChanged { .. } | MissionEvent::Reattached { .. })

@@ -208,7 +208,7 @@ pub enum TraceError {
     Unreadable { line: usize, source: io::Error },
     /// The first line is none of a trace.
     #[error(
-        "this is no trace, whose first line is the header that `pleach run --trace FILE` writes: {}",
+        "line 1: not the header of a trace, which `pleach run --trace FILE` writes first: {}",
         within_line(source)
     )]
     NotATrace { source: serde_json::Error },

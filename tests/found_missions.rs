@@ -26,8 +26,8 @@ fn hard_missions_come_to_an_end() {
     }
 }
 
-/// Missions in which a property is violated. Each file says which and why: the monitor stops them. One that has been
-/// mended belongs to those above.
+/// Missions in which the residual of a robot falls below 0. Each file says why: the monitor stops them. One that has
+/// been mended belongs to those above.
 #[test]
 fn what_is_known_to_be_violated_is_noticed() {
     for file in files("tests/scenarios/violated") {
@@ -35,6 +35,7 @@ fn what_is_known_to_be_violated_is_noticed() {
         let end = mission::run(&scenario, &mut []).unwrap().end;
         let said = format!("{}: {:?}: {}", scenario.name, end.outcome, end.reason);
         assert_eq!(end.outcome, Outcome::InvariantViolated, "{said}");
+        assert!(end.reason.starts_with("residual is violated"), "{said}");
     }
 }
 

@@ -127,7 +127,12 @@ fn an_end_with_a_reason_keeps_it() {
 fn what_is_not_a_trace_is_refused() {
     let refused = |text: &str| TraceReader::new(text.as_bytes()).unwrap_err();
     assert!(matches!(refused(""), TraceError::Empty));
-    assert!(matches!(refused("hello"), TraceError::NotALine { line: 1, .. }));
+    assert!(matches!(refused("hello"), TraceError::NotATrace { .. }));
+    assert_eq!(
+        refused("name = \"room\"").to_string(),
+        "line 1: not the header of a trace, which `pleach run --trace FILE` writes first: expected \
+         ident in column 2"
+    );
     let other = written().replacen("\"version\":1", "\"version\":2", 1);
     assert!(matches!(refused(&other), TraceError::OtherFormat { version: 2, .. }));
     let headless = written().split_once('\n').unwrap().1.to_owned();

@@ -78,10 +78,6 @@ pub fn watch(
     }
     #[cfg(feature = "pdf")]
     let printer = outputs.pdf.then(Printer::new).transpose()?;
-    #[cfg(not(feature = "pdf"))]
-    if outputs.pdf {
-        return Err(Failure::Without { what: "--pdf", feature: "pdf" });
-    }
     let open = |album: Album| if outputs.plain { album.plain() } else { album };
     let mut album =
         outputs.figures.as_ref().map(|_| open(Album::with_faults(scenario, planned.faults)));

@@ -3,8 +3,10 @@
 use super::arguments::JudgeArguments;
 use super::status::{Failure, Status};
 use super::{output, source};
+use pleach::automaton::network::scenario::Settings;
 use pleach::judge::{Verdict, judge};
 use pleach::trace::TraceReader;
+use pleach::verify::network::judged_faults;
 
 /// Judges a trace and says what is wrong with it.
 pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
@@ -15,7 +17,8 @@ pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
     let input =
         source::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
     let reader = TraceReader::new(input).map_err(|error| unreadable(error.to_string()))?;
-    let whole = if reader.faults().are_none() { "" } else { ", judged by what no fault may break" };
+    let faults = judged_faults(&Settings::resolve(reader.scenario()), reader.faults());
+    let whole = if faults.are_none() { "" } else { ", judged by what no fault may break" };
     match judge(reader).map_err(|error| torn(error.to_string()))? {
         Verdict::Sound { periods, end, .. } => {
             let (trace, name) = (path.display(), end.outcome.name().replace('_', " "));

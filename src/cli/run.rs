@@ -18,6 +18,9 @@ use std::path::{Path, PathBuf};
 
 /// Runs the missions that the arguments ask for.
 pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
+    if arguments.pdf && !cfg!(feature = "pdf") {
+        return Err(Failure::Without { what: "--pdf", feature: "pdf" });
+    }
     output::check_places(&arguments.scenarios, data_outputs(arguments))?;
     let runs = plan(arguments)?;
     check_tables(arguments)?;

@@ -107,7 +107,7 @@ mod violation;
 
 pub use bound::Spans;
 pub use extremes::{Extreme, Extremes};
-pub use judge::{Judge, JudgeOfFleets, Referee, Safety};
+pub use judge::{Judge, JudgeOfFleets, Referee, Safety, judged_faults};
 pub use limits::{Limits, SLACK};
 pub use monitor::{Monitor, RoleTable, audit};
 pub use property::Property;

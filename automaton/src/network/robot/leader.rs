@@ -135,8 +135,8 @@ impl Robot {
         newer.max_by_key(|(id, _)| *id)
     }
 
-    /// As it leaves the election of a leader: that it knows in whose tree that was elected. It may hear of what the
-    /// leader does next before it knows every token.
+    /// The effect of leaving the election of a leader: the robot records the tree of the best bid that it knows. It may
+    /// hear what the leader does next before it knows every token; that of the leader comes no later.
     pub(super) fn learns_who_leads(&self) -> Option<MissionEffect> {
         let is_electing = self.phase() == Phase::LeaderElection;
         is_electing.then(|| MissionEffect::LedFrom(self.root_of_winner()))

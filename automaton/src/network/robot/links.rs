@@ -4,9 +4,10 @@
 //! robots then stands for them: going up the tree each is attached to the next, going down each is
 //! attached to the one before, and the break points at both ends hold the chain.
 
+use pleach_continuous::Point;
 use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
-use super::super::duty::{Duty, Shifting};
+use super::super::duty::{Duty, Hop, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
 
@@ -134,28 +135,54 @@ impl Robot {
                 .robot_at(place + 1)
                 .or_else(|| self.holder(path.hops.get(place + 1)?.post.id).map(Neighbour::id));
         }
-        let access = hop.crossing.get(self.place_in_crossing(&hop.crossing))?;
+        let access = hop.crossing.get(self.index_in_crossing(&hop.crossing))?;
         Some(self.site.robots + access)
     }
 
-    /// The access points that the robot passes on its way to the place ahead on Σ, where it goes up the tree.
-    pub(super) fn crossing(&self) -> Option<&[usize]> {
+    /// The place on Σ that the robot has left, where it goes up the tree.
+    pub(super) fn hop_left(&self) -> Option<&Hop> {
         let Duty::Shifting(Shifting { place, .. }) = *self.duty else { return None };
         let shift = self.mission.shift()?;
         let goes_up = !shift.path.descends(shift.active()?.first);
-        shift.path.hops.get(place).filter(|_| goes_up).map(|hop| hop.crossing.as_slice())
+        shift.path.hops.get(place).filter(|_| goes_up)
     }
 
-    /// To which of the access points that it passes one after the other it is attached: to the last to which a link may
-    /// be made, and to none before the one to which it has been attached.
-    pub(super) fn place_in_crossing(&self, crossing: &[usize]) -> usize {
-        let distance =
-            |access: usize| self.site.distance(self.position, self.site.access_points[access]);
+    /// The index in `crossing` of the access point to which it is attached: the last within d_build, and none before the
+    /// one to which it was attached. One that has taken the duty over from another is attached to the nearest.
+    pub(super) fn index_in_crossing(&self, crossing: &[usize]) -> usize {
         let parent = self.parent.and_then(|node| node.checked_sub(self.site.robots));
         let reached = parent.and_then(|parent| crossing.iter().position(|&it| it == parent));
-        let may_attach = |&place: &usize| self.may_build(distance(crossing[place]));
-        let first = reached.unwrap_or(0);
-        (first..crossing.len()).rfind(may_attach).unwrap_or(first)
+        let distance = |&at: &usize| self.distance_to_access(crossing[at], self.position);
+        let nearest =
+            || (0..crossing.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
+        self.changes_over(crossing, reached.unwrap_or_else(nearest), self.position)
+    }
+
+    /// The index of the access point to which a robot is attached at `place` that was attached to that at `index`.
+    fn changes_over(&self, crossing: &[usize], index: usize, place: Point) -> usize {
+        let is_near = |&at: &usize| self.may_build(self.distance_to_access(crossing[at], place));
+        (index..crossing.len()).rfind(is_near).unwrap_or(index)
+    }
+
+    fn distance_to_access(&self, access: usize, place: Point) -> f64 {
+        self.site.distance(place, self.site.access_points[access])
+    }
+
+    /// Whether the link of a robot to one of these access points after the other lasts on the shortest way between two
+    /// places, with a clearance to spare.
+    pub(super) fn keeps_link_on_the_way(&self, crossing: &[usize], from: Point, to: Point) -> bool {
+        let Some(way) = self.site.free_space.geodesic(from, to) else { return false };
+        let step = self.site.settings.step_radius;
+        let limit = self.hard_length() - self.clearance();
+        let mut index = self.changes_over(crossing, 0, from);
+        way.segments(from).all(|piece| {
+            let steps = (piece.vector().norm() / step).ceil().max(1.0);
+            (1..=steps as u32).all(|count| {
+                let place = piece.at(f64::from(count) / steps);
+                index = self.changes_over(crossing, index, place);
+                self.distance_to_access(crossing[index], place) <= limit
+            })
+        })
     }
 
     /// The robot of the chain that stands for a post whose holder has left it. That of a robot that is not under

@@ -53,12 +53,13 @@ impl Robot {
         self.next_hop().map(|hop| hop.place.reference)
     }
 
-    /// The access point to which it changes over next on its way along Σ: on a shorter way to the place ahead it might
-    /// be out of reach of both.
+    /// The next access point that its way along Σ passes, where the shortest way to the place ahead from the one that it
+    /// has left is out of reach of both.
     pub(super) fn next_of_crossing(&self) -> Option<Point> {
-        let crossing = self.crossing()?;
-        let next = crossing.get(self.place_in_crossing(crossing) + 1)?;
-        Some(self.site.access_points[*next])
+        let (hop, goal) = (self.hop_left()?, self.reference_ahead()?);
+        let next = hop.crossing.get(self.index_in_crossing(&hop.crossing) + 1)?;
+        let is_needed = !self.keeps_link_on_the_way(&hop.crossing, hop.place.position, goal);
+        is_needed.then(|| self.site.access_points[*next])
     }
 
     pub(super) fn is_off_post(&self) -> bool {

@@ -84,7 +84,8 @@ pub struct Control {
     pub max_steps: Option<usize>,
     /// Δt: length of a control period in seconds. Default 1.
     pub period: Option<f64>,
-    /// Rounds of coordination messages in a control period. Default 8.
+    /// Rounds of coordination messages in a control period. Default 8; with fewer than 5 a mission is judged only by
+    /// what no fault may break.
     pub rounds_per_period: Option<usize>,
     /// How routes are computed. Default `accelerated_dual`.
     pub routing_method: Option<RoutingMethod>,

@@ -122,10 +122,10 @@ pub enum Problem {
     ServiceRadiusTooSmall { service_radius: f64, clearance: f64, margin: f64, least: f64 },
     /// ρ so large that robots out of range of each other could touch.
     #[error(
-        "{clearance} is too large for max_range = {max_range}: robots that cannot hear each other \
-         stay 2 clearances apart and move, so it must be less than {}", short(*most)
+        "{clearance} is too large for max_range = {max_range}{}: robots out of range of each other \
+         must stay more than 2 clearances apart; lower it, or raise max_range", told_errors(*errors)
     )]
-    ClearanceTooLarge { clearance: f64, max_range: f64, most: f64 },
+    ClearanceTooLarge { clearance: f64, max_range: f64, errors: f64 },
     /// σ > (u − 2ρ)/2 (footnote 6).
     #[error(
         "{} is too long a step: robots that cannot hear each other could meet within one \
@@ -236,6 +236,11 @@ pub enum Problem {
 fn short(value: f64) -> String {
     let is_long = value.is_finite() && value != 0.0 && !(1e-6..1e15).contains(&value.abs());
     if is_long { format!("{value:e}") } else { value.to_string() }
+}
+
+/// What else keeps robots apart.
+fn told_errors(errors: f64) -> &'static str {
+    if errors > 0.0 { " and the errors of position and motion" } else { "" }
 }
 
 /// What a length allows for `position_error` and `motion_error`.

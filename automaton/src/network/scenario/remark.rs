@@ -164,8 +164,8 @@ impl fmt::Display for Remark {
             }
             Remark::ShortPeriods { rounds } => write!(
                 formatter,
-                "{rounds}, and an exchange of duties takes up to {}: where a control period ends before one, what \
-                 nodes know differs, so that the mission is held against what no fault may break, and no more",
+                "{rounds}, and an exchange of duties takes up to {}: a control period may end during one, and the \
+                 mission is judged only by what no fault may break; with more rounds it is judged in full",
                 Settings::ROUNDS_OF_AN_EXCHANGE
             ),
             Remark::FewRounds { rounds } => write!(

@@ -301,8 +301,8 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
     let clearance = settings.planning_clearance();
     let widest = (max_range - settings.link_margin()) / 2.0;
     if clearance >= widest {
-        let most = widest - (clearance - settings.clearance);
-        let problem = Problem::ClearanceTooLarge { clearance: settings.clearance, max_range, most };
+        let (clearance, errors) = (settings.clearance, settings.link_margin());
+        let problem = Problem::ClearanceTooLarge { clearance, max_range, errors };
         return vec![problem.at(control_key("clearance"))];
     }
     let margin = clearance - settings.clearance;

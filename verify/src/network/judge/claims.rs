@@ -1,7 +1,7 @@
 //! Whether an event is true of the world at the instant for which it is recorded.
 
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::Strategy;
+use pleach_automaton::network::scenario::{Settings, Strategy};
 use pleach_discrete::network::Role;
 
 use super::ledger::{Ledger, Stage};
@@ -14,7 +14,7 @@ use crate::network::tree;
 /// Robots exchange duties when they touch: at most this many ρ apart (they keep 2ρ).
 const CONTACT: f64 = 2.6;
 /// Rounds of beacons that an exchange of duties takes: offer, reply, and the two duties taken.
-const EXCHANGE_ROUNDS: usize = 4;
+const EXCHANGE_ROUNDS: usize = Settings::ROUNDS_OF_AN_EXCHANGE - 1;
 /// A team is at a stationary point when every member is where it was before, within this share of ρ or σ,
 /// the smaller one: in the last control period or, as it moves back and forth, in one of the recent ones.
 const STILL: f64 = 0.3;

@@ -55,7 +55,7 @@ pub use fleets::JudgeOfFleets;
 use ground::Ground;
 pub use ledger::{Ledger, Stage};
 use places::Places;
-pub use referee::Referee;
+pub use referee::{Referee, judged_faults};
 pub use safety::{Safety, relayed};
 pub(super) use tasks::TaskClaims;
 use terms::Terms;

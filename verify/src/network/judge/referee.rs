@@ -2,7 +2,7 @@
 
 use pleach_automaton::network::certificate::Certificate;
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::ValidScenario;
+use pleach_automaton::network::scenario::{Settings, ValidScenario};
 use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
@@ -10,13 +10,20 @@ use super::{Judge, JudgeOfFleets, Safety};
 use crate::network::extremes::Extremes;
 use crate::network::violation::Violation;
 
+/// The faults by which a mission is judged in which these occur: where control periods are too short for an exchange
+/// of duties, messages count as late.
+pub fn judged_faults(settings: &Settings, faults: Faults) -> Faults {
+    let is_short = !settings.has_rounds_for_exchanges();
+    Faults { messages: faults.messages || is_short, ..faults }
+}
+
 /// The judge of a mission: by all definitions where nothing fails, and otherwise by what no fault may
-/// break. Where control periods are too short for an exchange of duties, messages count as late.
+/// break.
 #[derive(Clone, Debug)]
 pub enum Referee<'a> {
-    /// Of a mission without faults.
+    /// Of a mission that is judged by all definitions.
     Whole(Box<Judge<'a>>),
-    /// Of a mission with faults.
+    /// Of a mission with faults, or with periods too short for an exchange of duties.
     Safety(Box<Safety>),
     /// Of the missions of several fleets.
     Fleets(Box<JudgeOfFleets<'a>>),
@@ -42,8 +49,7 @@ impl<'a> Referee<'a> {
         faults: Faults,
         role_table: impl Fn(Role, Role) -> bool + 'a,
     ) -> Self {
-        let is_short = !scenario.site().settings.has_rounds_for_exchanges();
-        let faults = Faults { messages: faults.messages || is_short, ..faults };
+        let faults = judged_faults(&scenario.site().settings, faults);
         match faults.are_none() {
             true => Referee::Whole(Box::new(Judge::new(scenario, role_table))),
             false => Referee::Safety(Box::new(Safety::new(scenario, faults))),
@@ -88,7 +94,7 @@ impl<'a> Referee<'a> {
         }
     }
 
-    /// An observer's account of why a mission without faults ended: what its end should come with.
+    /// An observer's account of why a mission that is judged by all definitions ended: what its end should come with.
     pub fn account(&self, end: &End) -> Option<Certificate> {
         match self {
             Referee::Whole(judge) => judge.account(end),

@@ -151,29 +151,41 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     assert!(!last.has_arrived(), "the break point at the end is of another subgroup");
 }
 
-/// Where Σ leads over two access points it might be out of reach of both on a shorter way.
+/// Where Σ leads over two access points the shortest way may be out of reach of both.
 #[test]
 fn a_recruit_goes_by_way_of_the_access_points_that_its_path_passes() {
     let (mut hall, build) = (hall(), robot().build_length());
-    let access_point = |links| AccessPoint { position: east(build * links).into() };
-    hall.access_point = [0.0, 1.2, 1.5].map(access_point).to_vec();
-    let target = |crossing: &[usize], parent: usize, links: f64| {
+    let place = |east: f64, north: f64| HERE + Vector::new(east, north) * build;
+    let access_point = |links| AccessPoint { position: place(links, 0.0).into() };
+    hall.access_point = [0.0, 1.2, 1.7].map(access_point).to_vec();
+    let recruit = |crossing: &[usize], parent: NodeId, from: Point, ahead: Point| {
         let mut robot = Robot { site: robot_of(&hall).site, ..shifting(0.5, false) };
         let Mission::Shift(shift) = &*robot.mission else { panic!("it is on its way") };
         let mut path = Path::clone(&shift.path);
         path.hops[0].crossing = crossing.to_vec();
+        path.hops[0].place = PathPlace { reference: from, position: from };
+        path.hops[1].place = PathPlace { reference: ahead, position: ahead };
         let shift = Shift { path: Arc::new(path), ..shift.clone() };
         robot.mission = Current::new(Mission::Shift(shift));
-        (robot.position, robot.parent) = (east(build * links), Some(ROBOTS + parent));
+        (robot.position, robot.parent) = (from, Some(parent));
         robot.measures();
-        robot.goal()
+        (robot.goal(), robot.named_parent())
     };
-    let (ahead, at) = (Some(east(1.0)), |links: f64| Some(east(build * links)));
-    assert_eq!(target(&[], 0, 0.1), ahead, "the place ahead");
-    assert_eq!(target(&[0], 0, 0.1), ahead, "both robots are attached there");
-    assert_eq!((target(&[0, 2], 0, 0.4), target(&[0, 2], 0, 0.6)), (at(1.5), ahead));
-    assert_eq!(target(&[0, 2], 2, 0.4), ahead, "it does not go back");
-    assert_eq!((target(&[0, 1, 2], 0, 0.1), target(&[0, 1, 2], 0, 0.3)), (at(1.2), at(1.5)));
+    let (first, second) = (ROBOTS, ROBOTS + 2);
+    // Both stand at the end of their links, and the way between them is out of reach of both access points.
+    let (from, ahead) = (place(0.0, 0.95), place(1.7, 0.95));
+    let by_way = (Some(place(1.7, 0.0)), Some(first));
+    assert_eq!(recruit(&[0, 2], first, from, ahead), by_way);
+    assert_eq!(recruit(&[0], first, from, ahead).0, Some(ahead), "both are attached there");
+    assert_eq!(recruit(&[0, 1, 2], first, from, ahead).0, Some(place(1.2, 0.0)));
+    // The straight way is within reach.
+    assert_eq!(recruit(&[0, 2], first, place(0.0, 0.1), place(1.7, 0.1)).0, Some(place(1.7, 0.1)));
+    // It is attached to the last within reach, and does not go back.
+    let near = recruit(&[0, 2], first, place(0.9, 0.0), ahead);
+    assert_eq!(near, (Some(ahead), Some(second)));
+    assert_eq!(recruit(&[0, 2], second, place(0.6, 0.0), ahead).1, Some(second));
+    // It has taken the duty over beyond the second one.
+    assert_eq!(recruit(&[0, 2], 3, place(2.75, 0.0), ahead).1, Some(second));
 }
 
 /// One that queues behind the next holds the post where it stands.
