@@ -239,6 +239,12 @@ pub const USES: &[Use] = &[
     ("mark_connected", TREE, INSTANT, "tree::mark_connected(&links, &mut connected)"),
     ("advance", "verify/src/reach/affine.rs", "verify/src/reach/flow.rs", "steps.advance(track)"),
     ("widen", ZONOTOPE, ZONOTOPE, "sum.widen(&self.slack)"),
+    (
+        "judged_faults",
+        "verify/src/network/judge/referee.rs",
+        "src/cli/judge.rs",
+        "judged_faults(&Settings::resolve(reader.scenario()), reader.faults())",
+    ),
 ];
 
 /// How the product uses an item of a file.
