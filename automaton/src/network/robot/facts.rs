@@ -221,7 +221,7 @@ facts! {
             /// It is off the place ahead on Σ.
             off_place_ahead: robot.is_off_place_ahead(),
             /// It has yet to change over to another access point on its way to the place ahead on Σ.
-            before_changeover: robot.next_of_crossing().is_some(),
+            before_changeover: robot.is_before_changeover(),
             /// The primary team is the active team.
             advances: robot.phase() == Phase::Advance,
             /// Recruits are called for ahead of a standstill.

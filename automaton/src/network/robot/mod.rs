@@ -564,9 +564,12 @@ impl Robot {
     fn process_news(&mut self, is_due: bool) -> Result<(), TransitionError> {
         if !std::mem::take(&mut self.has_news) && !is_due {
             #[cfg(feature = "abstraction")]
-            if cfg!(debug_assertions) && self.is_looked_at() {
-                assert_eq!(self.overlooked(), None, "robot {} overlooks something", self.id);
-            }
+            debug_assert_eq!(
+                self.is_looked_at().then(|| self.overlooked()).flatten(),
+                None,
+                "robot {} overlooks something",
+                self.id
+            );
             return Ok(());
         }
         self.process_messages()

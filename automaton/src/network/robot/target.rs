@@ -53,13 +53,19 @@ impl Robot {
         self.next_hop().map(|hop| hop.place.reference)
     }
 
-    /// The next access point that its way along Σ passes, where the shortest way to the place ahead from the one that it
-    /// has left is out of reach of both.
-    pub(super) fn next_of_crossing(&self) -> Option<Point> {
-        let (hop, goal) = (self.hop_left()?, self.reference_ahead()?);
-        let next = hop.crossing.get(self.index_in_crossing(&hop.crossing) + 1)?;
-        let is_needed = !self.keeps_link_on_the_way(&hop.crossing, hop.place.position, goal);
-        is_needed.then(|| self.site.access_points[*next])
+    /// The next access point that its way along Σ passes.
+    fn next_of_crossing(&self) -> Option<Point> {
+        let crossing = &self.hop_left()?.crossing;
+        let next = crossing.get(self.index_in_crossing(crossing) + 1)?;
+        Some(self.site.access_points[*next])
+    }
+
+    /// Whether it has yet to change over to another access point on Σ, and the shortest way from the place that it has
+    /// left to the place ahead is out of reach of both.
+    pub(super) fn is_before_changeover(&self) -> bool {
+        let places = (self.next_of_crossing(), self.hop_left(), self.reference_ahead());
+        let (Some(_), Some(hop), Some(goal)) = places else { return false };
+        !self.keeps_link_on_the_way(&hop.crossing, hop.place.position, goal)
     }
 
     pub(super) fn is_off_post(&self) -> bool {

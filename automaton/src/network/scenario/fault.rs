@@ -128,16 +128,16 @@ pub enum Problem {
     ClearanceTooLarge { clearance: f64, max_range: f64, errors: f64 },
     /// σ > (u − 2ρ)/2 (footnote 6).
     #[error(
-        "{} is too long a step: robots that cannot hear each other could meet within one \
-         period, so at most (max_range − 2 clearance)/2 = {}", short(*step_radius), short(*most)
+        "{step_radius} is too long a step: robots that cannot hear each other could meet \
+         within one period, so at most (max_range − 2 clearance)/2 = {most}"
     )]
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.
     #[error(
         "no link can be added to the tree: a reliability of {build_reliability} is reached \
-         at distance {}, and robots may stand service_radius = {} away from their posts; lower \
-         this reliability or service_radius, or raise full_range",
-        short(*longest), short(*service_radius)
+         at distance {longest:.6}, and robots may stand service_radius = {service_radius} \
+         away from their posts; lower this reliability or service_radius, or raise \
+         full_range"
     )]
     TreeLinksTooShort { build_reliability: f64, longest: f64, service_radius: f64 },
     /// Links would be too weak as soon as they are made.

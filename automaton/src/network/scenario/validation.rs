@@ -299,8 +299,8 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
         service_radius, step_radius, build_reliability, tree_reliability, errors, ..
     } = settings;
     let clearance = settings.planning_clearance();
-    let widest = (max_range - settings.link_margin()) / 2.0;
-    if clearance >= widest {
+    let most = (max_range - 2.0 * clearance - settings.link_margin()) / 2.0;
+    if most <= 0.0 {
         let (clearance, errors) = (settings.clearance, settings.link_margin());
         let problem = Problem::ClearanceTooLarge { clearance, max_range, errors };
         return vec![problem.at(control_key("clearance"))];
@@ -312,7 +312,6 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
         Problem::ServiceRadiusTooSmall { service_radius, clearance, margin, least }
             .at(control_key("service_radius"))
     });
-    let most = (max_range - 2.0 * clearance - settings.link_margin()) / 2.0;
     let step = (step_radius > most * (1.0 + ROUNDING))
         .then(|| Problem::StepTooLong { step_radius, most }.at(control_key("step_radius")));
     let weak = (build_reliability < tree_reliability).then(|| {

@@ -3,7 +3,6 @@
 
 use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
-use super::super::super::duty::Path;
 use super::super::super::mission::{Idle, LeaderElection, RecruitElection, Standstill};
 use super::*;
 
