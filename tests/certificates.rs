@@ -24,6 +24,7 @@ fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
         (kept("given-up/wrong-order.toml"), Outcome::Blocked, "blocked"),
         (kept("saturated.toml"), Outcome::Blocked, "tried"),
         (kept("given-up/body-in-corridor.toml"), Outcome::Blocked, "blocked"),
+        (kept("given-up/flows-in-a-circle.toml"), Outcome::Blocked, "blocked"),
     ]
 }
 

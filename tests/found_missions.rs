@@ -21,16 +21,6 @@ fn hard_missions_come_to_an_end() {
     }
 }
 
-/// Missions in which the residual of a robot falls below 0. Each file says why: the monitor stops them. One that has
-/// been mended belongs to those above.
-#[test]
-fn what_is_known_to_be_violated_is_noticed() {
-    for (end, said) in ends("tests/scenarios/violated") {
-        assert_eq!(end.outcome, Outcome::InvariantViolated, "{said}");
-        assert!(end.reason.starts_with("residual is violated"), "{said}");
-    }
-}
-
 /// How the missions of a folder end, by the names of their files, and the same in words.
 fn ends(folder: &str) -> impl Iterator<Item = (End, String)> {
     files(folder).into_iter().map(|file| {

@@ -72,7 +72,7 @@ const PROOFS: &[Proof] = &[
     ("the_recruit_the_last_and_both_sides_of_a_crossing_break", "is_break_point", PATH),
     ("every_place_before_the_last_break_point_is_in_one_subgroup", "subgroups", PATH),
     ("no_more_is_granted_than_there_is_to_spare", "most", RESERVATION),
-    ("a_lease_ends_at_the_sender_first", "renewed", RESERVATION),
+    ("a_lease_ends_at_the_sender_first", "promise", RESERVATION),
     ("a_phase_answers_every_step_in_one_way", "MISSION", TABLES),
     ("every_phase_is_reached", "MISSION", TABLES),
     ("the_end_is_heard_and_only_an_announcement_follows", "MISSION", TABLES),

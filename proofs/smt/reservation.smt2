@@ -1,9 +1,10 @@
 ; A sender never uses more of a link than its receiver keeps for it, whatever becomes of messages.
 ;
-; One link of `reservation.rs`. The sender uses `held`, may use up to `granted`, and has asked last
-; with the number `asked`. The receiver keeps `kept`, and has taken in last what bore the number
-; `known`. Messages stay on their way for ever: what is heard is any of them, at any time, any number
-; of times, or never. An ask carries what is in use when it is sent, a grant what is kept then.
+; One link of `reservation.rs`, and one control period, now or ahead: every amount is what holds in it, which is
+; nothing where a grant ends before. So leases need no lemma of their own. The sender uses `held`, may use up
+; to `granted`, and has asked last with the number `asked`. The receiver keeps `kept`, and has taken in last
+; what bore the number `known`. Messages stay on their way for ever: what is heard is any of them, at any
+; time, any number of times, or never. An ask carries what is in use when it is sent.
 (declare-sort Message 0)
 (declare-fun was-ask (Message) Bool)    ; sent before this step, by the sender
 (declare-fun was-grant (Message) Bool)  ; sent before this step, by the receiver
@@ -48,10 +49,11 @@
 (assert (not after))
 (check-sat) ; expect unsat
 (pop)
-; It asks: what was granted before is void, beyond what is in use.
+; It asks: what was granted before is void, beyond what is in use now, some of which may end before.
 (push)
-(assert (and sends-ask receiver-rests (= held2 held) (= granted2 held) (> asked2 asked)
-             (= (number new) asked2) (= (flow new) held)))
+(assert (and sends-ask receiver-rests (= held2 held) (> asked2 asked)
+             (= (number new) asked2) (>= (flow new) held)
+             (= granted2 (ite (< (flow new) granted) (flow new) granted))))
 (assert (not after))
 (check-sat) ; expect unsat
 (pop)
@@ -62,17 +64,24 @@
 (assert (not after))
 (check-sat) ; expect unsat
 (pop)
-; It grants: it keeps as much or more, and tells the sender.
+; It grants: it keeps as much or more, and tells the sender that or less.
 (push)
 (assert (and sends-grant sender-rests (= known2 known) (>= kept2 kept)
-             (= (number new) known) (= (flow new) kept2)))
+             (= (number new) known) (<= (flow new) kept2)))
 (assert (not after))
 (check-sat) ; expect unsat
 (pop)
-; The sender takes in a grant that answers its last request.
+; If it may keep less than it did, the sender may use what is not kept any more.
+(push)
+(assert (and sends-grant sender-rests (= known2 known) (= (number new) known) (<= (flow new) kept2)))
+(assert (not after))
+(check-sat) ; expect sat
+(pop)
+; The sender takes in a grant that answers its last request, or not all of it.
 (push)
 (assert (and sends-nothing receiver-rests (was-grant heard) (= (number heard) asked)
-             (= held2 held) (= asked2 asked) (= granted2 (ite (> (flow heard) granted) (flow heard) granted))))
+             (= held2 held) (= asked2 asked) (>= granted2 granted)
+             (<= granted2 (ite (> (flow heard) granted) (flow heard) granted))))
 (assert (not after))
 (check-sat) ; expect unsat
 (pop)
@@ -81,34 +90,6 @@
 (assert (and sends-nothing receiver-rests (was-grant heard)
              (= held2 held) (= asked2 asked) (= granted2 (ite (> (flow heard) granted) (flow heard) granted))))
 (assert (not after))
-(check-sat) ; expect sat
-(pop)
-
-; A lease does not end at the receiver first: a grant says until when the receiver keeps it, which never
-; becomes less, whichever of its grants the sender has heard.
-(push)
-(declare-fun until (Message) Int)
-(declare-const used-until Int) (declare-const kept-until Int)
-(declare-const used-until2 Int) (declare-const kept-until2 Int) (declare-const given-until Int)
-(assert (<= used-until kept-until))
-(assert (forall ((m Message)) (=> (was-grant m) (<= (until m) kept-until))))
-(push)
-(assert (and (= kept-until2 (ite (> given-until kept-until) given-until kept-until))
-             (= (until new) kept-until2) sends-grant (= used-until2 used-until)))
-(assert (not (and (<= used-until2 kept-until2)
-                  (forall ((m Message)) (=> (is-grant m) (<= (until m) kept-until2))))))
-(check-sat) ; expect unsat
-(pop)
-(push)
-(assert (and (was-grant heard) (= kept-until2 kept-until)
-             (= used-until2 (ite (> (until heard) used-until) (until heard) used-until))))
-(assert (> used-until2 kept-until2))
-(check-sat) ; expect unsat
-(pop)
-; If a later grant may say less, the sender may use what is not kept any more.
-(assert (and (was-grant heard) (= kept-until2 given-until)
-             (= used-until2 (ite (> (until heard) used-until) (until heard) used-until))))
-(assert (> used-until2 kept-until2))
 (check-sat) ; expect sat
 (pop)
 
@@ -129,18 +110,40 @@
 (check-sat) ; expect sat
 (pop)
 
-; So it is when flows end that are not granted again. Of two links the second one's grant ends earlier, in
-; `end-b`. What is given lasts until `promised`, and is no more than what lasts as long.
+; So it is in the control periods ahead, if no grant is renewed: what is given ends after `first` in part and
+; after `last` altogether, and of two flows a lasts until `end-a` and b until `end-b`. What is carried in these
+; two is carried up to the last.
 (declare-const a Real) (declare-const b Real) (declare-const end-a Int) (declare-const end-b Int)
-(declare-const promised Int) (declare-const now Int)
-(define-fun lasting ((period Int)) Real (+ (ite (>= end-a period) a 0.0) (ite (>= end-b period) b 0.0)))
-(assert (and (>= a 0.0) (>= b 0.0) (>= given 0.0) (>= rate 0.0) (<= end-b end-a)))
+(declare-const all Real) (declare-const part Real) (declare-const first Int) (declare-const last Int)
+(declare-const now Int)
+(define-fun lasting ((period Int)) Real (+ (ite (<= period end-a) a 0.0) (ite (<= period end-b) b 0.0)))
+(define-fun promised ((period Int)) Real (ite (<= period first) all (ite (<= period last) part 0.0)))
+(define-fun carried ((period Int)) Bool (>= (lasting period) (+ (promised period) rate)))
+(assert (and (>= a 0.0) (>= b 0.0) (>= part 0.0) (>= all part) (>= rate 0.0) (<= first last)))
 (push)
-(assert (>= (lasting promised) (+ given rate)))
-(assert (and (<= now promised) (< (lasting now) (+ given rate))))
+(assert (and (carried first) (carried last) (<= now last) (not (carried now))))
 (check-sat) ; expect unsat
 (pop)
-; If what is given is carried now, and is promised for longer than that lasts, it is not.
-(assert (>= (lasting now) (+ given rate)))
-(assert (and (> given 0.0) (> promised end-b) (< (lasting promised) (+ given rate))))
+; What is carried now only is not.
+(push)
+(assert (and (carried now) (< now last) (not (carried last))))
+(check-sat) ; expect sat
+(pop)
+
+; Two robots send each other `there` and `back`, and have granted that; each has granted others something, too, and
+; sends to others. What goes there beyond what comes back is carried by what the second robot sends to others, and is
+; enough for the first one.
+(declare-const there Real) (declare-const back Real)
+(declare-const on1 Real) (declare-const on2 Real) (declare-const others1 Real) (declare-const others2 Real)
+(declare-const rate1 Real) (declare-const rate2 Real)
+(assert (and (>= back 0.0) (>= there back)))
+(assert (>= (- (+ there on1) (+ back others1)) rate1))
+(assert (>= (- (+ back on2) (+ there others2)) rate2))
+(push)
+(assert (not (and (>= (- on2 (+ (- there back) others2)) rate2)
+                  (>= (- (+ (- there back) on1) others1) rate1))))
+(check-sat) ; expect unsat
+(pop)
+; All that goes there need not be carried by that.
+(assert (< (- on2 (+ there others2)) rate2))
 (check-sat) ; expect sat

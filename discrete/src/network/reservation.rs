@@ -1,7 +1,7 @@
 //! Reservation: what may be granted of a flow, and until when a grant holds.
 //!
 //! A robot grants no more than it has to spare, so that what it sends on carries what it has granted; and a grant
-//! says until when the receiver keeps it, which never becomes less: so it ends at the sender first. The lemma
+//! says until when the receiver keeps it, which it does: so it ends at the sender first. The lemma
 //! `reservation.smt2` says why that is safe whatever becomes of messages. Flows are numbers of any kind.
 
 use std::ops::{Add, Sub};
@@ -47,12 +47,107 @@ where
     }
 }
 
-/// The last control period in which a grant holds that held until `until` and is told to hold until `told`.
-pub const fn renewed(until: u32, told: u32) -> u32 {
-    if told > until { told } else { until }
+/// What may be used of a flow, and until when: all of it for a while, and a part of it for longer.
+///
+/// The receiver of a flow keeps it, the sender uses it. Both enter every promise, the receiver before the sender and
+/// the sender perhaps never: so in no control period the sender may use more than the receiver keeps.
+///
+/// ```
+/// use pleach_discrete::network::reservation::Lease;
+///
+/// let mut lease = Lease::of(0.5, 12);
+/// assert!(lease.promise(0.25, 15));
+/// assert_eq!([12, 13, 15, 16].map(|period| lease.lasting(period)), [0.5, 0.25, 0.25, 0.0]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lease<N> {
+    /// All of it.
+    flow: N,
+    /// The last control period for all of it.
+    until: u32,
+    /// The part that holds for longer; nothing if none does.
+    part: N,
+    /// The last control period for that part.
+    part_until: u32,
 }
 
-/// Whether a grant that holds until control period `until` holds in this one.
-pub const fn holds(until: u32, period: u32) -> bool {
-    period <= until
+impl<N> Lease<N>
+where
+    N: Copy + Default + PartialOrd,
+{
+    /// A flow that holds until this control period.
+    pub fn of(flow: N, until: u32) -> Self {
+        Lease { flow, until, ..Lease::default() }
+    }
+
+    /// All of it.
+    pub const fn flow(&self) -> N {
+        self.flow
+    }
+
+    /// The last control period in which all of it holds.
+    pub const fn until(&self) -> u32 {
+        self.until
+    }
+
+    /// The part that holds for longer than all of it, and the last control period in which that does.
+    pub fn part(&self) -> Option<(N, u32)> {
+        (self.part > N::default()).then_some((self.part, self.part_until))
+    }
+
+    /// The last control period in which any of it holds.
+    pub fn end(&self) -> u32 {
+        self.part().map_or(self.until, |(_, until)| until)
+    }
+
+    /// What holds in a control period.
+    pub fn lasting(&self, period: u32) -> N {
+        match self.part() {
+            _ if period <= self.until => self.flow,
+            Some((part, until)) if period <= until => part,
+            _ => N::default(),
+        }
+    }
+
+    /// So much holds until this control period, besides what holds already. Returns false, and changes nothing, where
+    /// that would take more than one part.
+    pub fn promise(&mut self, flow: N, until: u32) -> bool {
+        let Lease { flow: all, until: end, part, part_until } = *self;
+        *self = if flow >= all && until >= end {
+            Lease { flow, until, part, part_until }
+        } else if flow > all && self.part().is_none() {
+            Lease { flow, until, part: all, part_until: end }
+        } else if flow <= all && flow >= part && until >= self.end() {
+            Lease { flow: all, until: end, part: flow, part_until: until }
+        } else {
+            return self.lasting(until) >= flow;
+        };
+        self.join_parts();
+        true
+    }
+
+    /// No more than this holds from now on.
+    pub fn limit(&mut self, flow: N) {
+        let least = |one: N| if flow < one { flow } else { one };
+        (self.flow, self.part) = (least(self.flow), least(self.part));
+        self.join_parts();
+    }
+
+    /// A part that is all of it is none, nor is one that does not hold for longer.
+    fn join_parts(&mut self) {
+        if self.part >= self.flow && self.part_until > self.until {
+            self.until = self.part_until;
+        }
+        if self.part <= N::default() || self.part_until <= self.until {
+            (self.part, self.part_until) = (N::default(), 0);
+        }
+    }
+
+    /// It is this control period: what has ended does not hold any more.
+    pub fn pass(&mut self, period: u32) {
+        if period > self.until {
+            let (flow, until) = self.part().unwrap_or((N::default(), self.until));
+            *self = Lease::of(if period > until { N::default() } else { flow }, until);
+        }
+    }
 }

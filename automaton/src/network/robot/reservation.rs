@@ -15,10 +15,19 @@
 //! so that late messages and copies change nothing.
 //!
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
-//! where grants are not renewed, flows end at those who send first.
+//! where grants are not renewed, flows end at those who send first. So what holds in any control period ahead is
+//! carried then:
+//!
+//! ```text
+//! Σ_j (F_ij that lasts until t) − Σ_j (granted to j until t) − r_i ≥ 0
+//! ```
+//!
+//! Where two robots send to each other, each grant waits for the other one to be renewed, and none is. Such a robot
+//! renews what others send beyond what it sends back to them, which the rest of its flows carries; after a lease
+//! that is left.
 
 use pleach_discrete::network::NodeId;
-use pleach_discrete::network::reservation::{Spare, holds, renewed};
+use pleach_discrete::network::reservation::{Lease, Spare};
 use serde::{Deserialize, Serialize};
 
 use super::super::message::Message;
@@ -82,30 +91,26 @@ pub(super) struct HeldFlow {
     pub flow: f64,
     /// F_ij as it is planned.
     wanted: f64,
-    /// The largest F_ij that the receiver has granted.
-    granted: f64,
+    /// The largest F_ij that the receiver has granted, and until when.
+    pub lease: Lease<f64>,
     /// The number of the last request.
     asked: RequestNumber,
     /// Whether the last request waits for an answer.
     is_open: bool,
     /// Whether a request is to be made.
     is_due: bool,
-    /// The last control period in which the grant holds.
-    pub until: u32,
 }
 
 /// What a receiver keeps for a sender.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reservation {
     from: NodeId,
-    /// The largest F_ij that the sender may use.
-    pub flow: f64,
+    /// The largest F_ij that the sender may use, and until when.
+    pub lease: Lease<f64>,
     wanted: f64,
     /// The number of the last request, and whether it has been answered.
     asked: RequestNumber,
     is_answered: bool,
-    /// The last control period in which the grant holds.
-    pub until: u32,
 }
 
 type Out = Outputs<Message, MissionEvent>;
@@ -113,7 +118,7 @@ type Out = Outputs<Message, MissionEvent>;
 impl Reservation {
     /// Whether its request waits for an answer, or for more than has been granted.
     fn is_unmet(&self) -> bool {
-        !self.is_answered || self.wanted > self.flow + SAME_FLOW
+        !self.is_answered || self.wanted > self.lease.flow() + SAME_FLOW
     }
 }
 
@@ -130,7 +135,12 @@ impl HeldFlow {
 
     /// What the plan and the receiver's grant allow.
     fn allowed(&self) -> f64 {
-        self.wanted.min(self.granted)
+        self.wanted.min(self.lease.flow())
+    }
+
+    /// What will be left of it in a control period ahead if no grant is renewed.
+    fn lasting(&self, period: u32) -> f64 {
+        self.flow.min(self.lease.lasting(period))
     }
 
     fn can_rise(&self) -> bool {
@@ -162,7 +172,7 @@ impl HeldFlow {
 
     /// Whether the receiver keeps more for the sender than it has a use for.
     fn can_be_given_back(&self) -> bool {
-        self.granted > self.flow + SAME_FLOW && self.wanted <= self.flow + SAME_FLOW
+        self.lease.flow() > self.flow + SAME_FLOW && self.wanted <= self.flow + SAME_FLOW
     }
 }
 
@@ -176,8 +186,8 @@ fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
             continue;
         }
         let Ok([more, less]) = links.get_disjoint_mut([more, less]) else { continue };
-        let lasts = |link: &RouteLink| holds(link.held.until, promised);
-        if more.reliability < less.reliability || lasts(less) && !lasts(more) {
+        let counts_until = less.held.lease.end().min(promised);
+        if more.reliability < less.reliability || more.held.lease.until() < counts_until {
             continue;
         }
         let taken = more.held.raise((less.held.flow - less.held.wanted).max(0.0));
@@ -187,13 +197,22 @@ fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
     taken_over
 }
 
+/// What another may use for longer than all that it has been granted: what it is sent back does not count, nor what has
+/// been promised less.
+fn part_for_longer(lease: &Lease<f64>, from: NodeId, links: &[RouteLink]) -> f64 {
+    let sent_back = link_at(links, from).map_or(0.0, |at| links[at].held.flow);
+    let promised = lease.part().map_or(0.0, |(part, _)| part);
+    (lease.flow() - sent_back).max(promised)
+}
+
 impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
         let (period, robots) = (self.period, self.site.robots);
         let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
         let knows_load = self.knows_load();
-        self.reservations.retain(|kept| holds(kept.until, period));
+        self.reservations.iter_mut().for_each(|kept| kept.lease.pass(period));
+        self.reservations.retain(|kept| kept.lease.until() >= period);
         for at in 0..self.links.len() {
             let link = &self.links[at];
             let to = link.to;
@@ -203,14 +222,13 @@ impl Robot {
             if to >= robots {
                 // An access point takes everything, as long as it is there.
                 let heard_in = self.neighbour(to).map_or(0, |known| known.heard_in);
-                let held = &mut self.links[at].held;
-                (held.granted, held.until) = (f64::INFINITY, heard_in.saturating_add(patience));
+                let until = heard_in.saturating_add(patience);
+                self.links[at].held.lease = Lease::of(f64::INFINITY, until);
             }
             let link = &mut self.links[at];
             let held = &mut link.held;
-            if !holds(held.until, period) {
-                (held.flow, held.granted) = (0.0, 0.0);
-            }
+            held.lease.pass(period);
+            held.flow = held.flow.min(held.lease.flow());
             let most = if can_raise { planned } else { planned.min(held.flow) };
             held.wanted = if link.is_retiring { 0.0 } else { most };
             held.is_due = to < robots && (held.is_in_use() || held.is_open);
@@ -255,7 +273,7 @@ impl Robot {
 
     /// The robots that may send to this one.
     pub(super) fn senders(&self) -> impl Iterator<Item = NodeId> {
-        self.reservations.iter().filter(|kept| kept.flow > 0.0).map(|kept| kept.from)
+        self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0).map(|kept| kept.from)
     }
 
     fn ask(&mut self, at: usize, outputs: &mut Out) {
@@ -264,7 +282,8 @@ impl Robot {
         self.last_request = RequestNumber { period: self.period, number };
         let RouteLink { to, held, .. } = &mut self.links[at];
         // What was granted before is void, beyond what is in use.
-        (held.asked, held.granted, held.is_open) = (self.last_request, held.flow, true);
+        held.lease.limit(held.flow);
+        (held.asked, held.is_open) = (self.last_request, true);
         let HeldFlow { asked: number, flow, wanted, .. } = *held;
         outputs.send(*to, Message::AskFlow(FlowRequest { number, held: flow, wanted }));
     }
@@ -276,11 +295,9 @@ impl Robot {
         if known.is_ok_and(|at| number <= self.reservations[at].asked) {
             return;
         }
-        let (flow, until) = known.map_or((0.0, self.period), |at| {
-            let kept = &self.reservations[at];
-            (kept.flow.min(held).max(0.0), kept.until)
-        });
-        let kept = Reservation { from, flow, wanted, asked: number, is_answered: false, until };
+        let mut lease = known.map_or(Lease::of(0.0, self.period), |at| self.reservations[at].lease);
+        lease.limit(held.max(0.0));
+        let kept = Reservation { from, lease, wanted, asked: number, is_answered: false };
         match known {
             Ok(at) => self.reservations[at] = kept,
             Err(at) => self.reservations.insert(at, kept),
@@ -293,8 +310,10 @@ impl Robot {
         let Some(at) = link_at(&self.links, from) else { return };
         let held = &mut self.links[at].held;
         if held.asked == grant.number {
-            (held.is_open, held.until) = (false, renewed(held.until, grant.until));
-            held.granted = held.granted.max(grant.flow);
+            held.is_open = false;
+            held.lease.promise(grant.flow, grant.until);
+            // It may have ended on its way.
+            held.lease.pass(self.period);
             self.has_flow_news = true;
         }
     }
@@ -325,7 +344,8 @@ impl Robot {
     /// Raises flows as far as they are granted and there is time to send, lowers others as far as the rest
     /// carries what it has granted, for as long, and replaces one by another.
     fn change_flows(&mut self) {
-        let (needed, promised) = (self.needed_outflow(), self.promised_until());
+        let needs = self.needs();
+        let promised = needs.last().map_or(self.period, |&(period, _)| period);
         let mut in_use: Vec<&mut RouteLink> = Vec::with_capacity(self.links.len());
         in_use.extend(self.links.iter_mut().filter(|link| link.held.is_in_use()));
         for _ in 0..PASSES {
@@ -336,8 +356,9 @@ impl Robot {
                 room -= more / link.reliability;
                 change += more;
             }
-            let lasting = in_use.iter().filter(|link| holds(link.held.until, promised));
-            let mut spare = lasting.map(|link| link.held.flow).sum::<f64>() - needed;
+            let lasting = |period| in_use.iter().map(|link| link.held.lasting(period)).sum::<f64>();
+            let spares = needs.iter().map(|&(period, needed)| lasting(period) - needed);
+            let mut spare = spares.fold(f64::INFINITY, f64::min);
             for link in &mut in_use {
                 let less = link.held.lower(spare.max(0.0));
                 spare -= less;
@@ -351,27 +372,62 @@ impl Robot {
     }
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
-    /// granted for as long as these last.
+    /// granted for as long as these last; a part of it for longer where it sends some of it back.
     fn grant_flows(&mut self, outputs: &mut Out) {
-        let (needed, promised) = (self.needed_outflow(), self.promised_until());
-        let wanted = self.reservations.iter().map(|kept| (kept.wanted - kept.flow).max(0.0));
+        let needed = self.needed_outflow();
+        let wanted =
+            self.reservations.iter().map(|kept| (kept.wanted - kept.lease.flow()).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
-        let until = self.lasts_until(carried).min(self.period.saturating_add(self.lease()));
-        let mut spare = Spare::of(self.lasting_outflow(until.max(promised)) - needed);
+        let until = self.lasts_until(carried).min(self.last_to_grant());
+        let longer = self.parts_last_until(until);
+        let mut spare = Spare::of(self.lasting_outflow(until) - needed);
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
-            let flow = spare.most(kept.flow, kept.wanted);
-            let can_grant = flow > kept.flow + SAME_FLOW && may_grant;
+            let (before, lease) = (kept.lease.flow(), &mut kept.lease);
+            let part =
+                longer.map(|longer| (part_for_longer(lease, kept.from, &self.links), longer));
+            let flow = spare.most(before, kept.wanted);
+            let can_grant = flow > before + SAME_FLOW && may_grant && lease.promise(flow, until);
             if can_grant {
-                spare.grant(kept.flow, flow);
-                kept.flow = flow;
+                spare.grant(before, flow);
             }
             if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
-                kept.until = renewed(kept.until, until);
-                let grant = FlowGrant { number: kept.asked, flow: kept.flow, until: kept.until };
-                outputs.send(kept.from, Message::GrantFlow(grant));
+                lease.promise(before, until);
+                part.map(|(flow, longer)| lease.promise(flow, longer));
+                let told = lease.part().filter(|told| part == Some(*told));
+                for (flow, until) in std::iter::once((lease.flow(), lease.until())).chain(told) {
+                    let grant = FlowGrant { number: kept.asked, flow, until };
+                    outputs.send(kept.from, Message::GrantFlow(grant));
+                }
             }
         }
+    }
+
+    /// The last control period for which it may grant something now.
+    fn last_to_grant(&self) -> u32 {
+        self.period.saturating_add(self.lease())
+    }
+
+    /// Until when its flows carry [parts](part_for_longer) of what it has granted, where that is longer than until the
+    /// period up to which they carry all of it.
+    fn parts_last_until(&self, until: u32) -> Option<u32> {
+        if !self.senders().any(|sender| self.sends_to(sender)) {
+            return None;
+        }
+        let part = |kept: &Reservation, period| match kept.lease {
+            lease if period <= lease.until() => lease.flow(),
+            lease => part_for_longer(&lease, kept.from, &self.links),
+        };
+        let is_carried = |period: u32| {
+            let parts = self.reservations.iter().map(|kept| part(kept, period)).sum::<f64>();
+            self.lasting_outflow(period) >= self.rate + parts - SAME_FLOW
+        };
+        let needs = self.needs().into_iter().map(|(period, _)| period);
+        let short = needs.filter(|&period| period > until && !is_carried(period)).min();
+        let ends = self.ends_of_flows().map(|end| end.min(self.last_to_grant()));
+        let carries =
+            |&end: &u32| end > until && short.is_none_or(|it| end < it) && is_carried(end);
+        ends.filter(carries).max()
     }
 
     /// Control periods for which it grants flows that last as long. A robot farther from the access points
@@ -393,27 +449,38 @@ impl Robot {
         self.links_in_use().map(|link| link.held.flow).sum()
     }
 
-    /// The flows that last up to this control period, even if no grant is renewed.
+    /// What is left of the flows in a control period ahead if no grant is renewed.
     fn lasting_outflow(&self, period: u32) -> f64 {
-        let lasting = self.links_in_use().filter(|link| holds(link.held.until, period));
-        lasting.map(|link| link.held.flow).sum()
+        self.links_in_use().map(|link| link.held.lasting(period)).sum()
     }
 
     /// The last control period up to which flows last that carry this much.
     fn lasts_until(&self, carried: f64) -> u32 {
-        let flows = self.links_in_use().filter(|link| link.held.flow > 0.0);
         let lasts = |&end: &u32| self.lasting_outflow(end) >= carried - SAME_FLOW;
-        flows.map(|link| link.held.until).filter(lasts).max().unwrap_or(self.period)
+        self.ends_of_flows().filter(lasts).max().unwrap_or(self.period)
     }
 
-    /// The last control period for which it has granted a flow; what it grants more may be used as long.
-    fn promised_until(&self) -> u32 {
-        self.reservations.iter().map(|kept| kept.until).max().unwrap_or(self.period)
+    /// The control periods after which less flows if no grant is renewed.
+    fn ends_of_flows(&self) -> impl Iterator<Item = u32> {
+        let flows = self.links_in_use().filter(|link| link.held.flow > 0.0);
+        flows.map(|link| link.held.lease).flat_map(|lease| [lease.until(), lease.end()])
+    }
+
+    /// What its own flows have to carry, up to each control period after which that is less: its rate, and what others
+    /// may send if no grant is renewed.
+    fn needs(&self) -> Vec<(u32, f64)> {
+        let leases = self.reservations.iter().map(|kept| kept.lease);
+        let ends = leases.clone().flat_map(|lease| [lease.until(), lease.end()]);
+        let mut ends: Vec<u32> = ends.chain([self.period]).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let promised = |period| leases.clone().map(|lease| lease.lasting(period)).sum::<f64>();
+        ends.into_iter().map(|end| (end, promised(end) + self.rate)).collect()
     }
 
     /// What others may send to this robot.
     fn granted_to_others(&self) -> f64 {
-        self.reservations.iter().map(|kept| kept.flow).sum()
+        self.reservations.iter().map(|kept| kept.lease.flow()).sum()
     }
 
     /// The flows of this period are those in use, and c_i of eq. (5) is what they leave of what others
@@ -422,9 +489,9 @@ impl Robot {
         for link in &mut self.links {
             link.share = link.load();
         }
-        let kept = self.reservations.iter().filter(|kept| kept.flow > 0.0);
+        let granted = self.reservations.iter().map(|kept| (kept.from, kept.lease.flow()));
         self.inflows.clear();
-        self.inflows.extend(kept.map(|kept| (kept.from, kept.flow)));
+        self.inflows.extend(granted.filter(|&(_, flow)| flow > 0.0));
         self.inflow = self.granted_to_others();
         self.residual = self.held_outflow() - self.inflow - self.rate;
         if self.residual.abs() < RESIDUAL_ROUNDING {

@@ -32,30 +32,46 @@ fn no_more_is_granted_than_there_is_to_spare() {
     assert!(before >= 0 || granted == kept);
 }
 
-/// A receiver that has kept a flow until any period below 3, and renews that twice, for any period below 4 each;
-/// the sender hears any three of the three grants, in any order, some of them again, others never: wherever its
-/// grant holds that of the receiver does, too.
+/// A receiver that keeps any flow below 3 until any period below 3, and promises two more, each until any period below
+/// 4: it keeps what it did and what it tells, or nothing changes and it tells nothing. The sender hears three of what
+/// it is told, in any order, some of it again: in any period it may use no more than the receiver keeps.
 #[kani::proof]
 #[kani::unwind(4)]
 fn a_lease_ends_at_the_sender_first() {
     let any_period = |bound: u8| u32::from(kani::any_where(|period: &u8| *period < bound));
-    let mut kept = any_period(3);
-    let mut told = [kept; 3];
-    for grant in &mut told[1..] {
-        kept = renewed(kept, any_period(4));
-        *grant = kept;
+    let period = any_period(5);
+    let mut told = [(below(3), any_period(3)); 3];
+    let mut kept = Lease::of(told[0].0, told[0].1);
+    for at in 1..3 {
+        let (flow, until) = (below(3), any_period(4));
+        let before = kept;
+        if kept.promise(flow, until) {
+            let more = if period <= until { flow } else { 0 };
+            assert!(kept.lasting(period) == before.lasting(period).max(more));
+            told[at] = (flow, until);
+        } else {
+            assert!(kept == before);
+        }
     }
-    let mut used = 0;
+    let mut used = Lease::of(0, 0);
     for _ in 0..3 {
         let heard = any_period(3);
-        for grant in 0..3 {
-            if grant == heard {
-                used = renewed(used, told[grant as usize]);
+        for (at, &(flow, until)) in told.iter().enumerate() {
+            if at == heard as usize {
+                used.promise(flow, until);
             }
         }
     }
-    let period = any_period(5);
-    kani::cover!(holds(kept, period) && !holds(used, period) && used > 0);
-    kani::cover!(holds(used, period) && told[0] < told[1]);
-    assert!(!holds(used, period) || holds(kept, period));
+    kani::cover!(used.lasting(period) > 0 && used.lasting(period) < kept.lasting(period));
+    kani::cover!(used.part().is_some() && used.lasting(period) == kept.lasting(period));
+    assert!(used.lasting(period) <= kept.lasting(period));
+    // When time has passed, what is left is what was to last, and no more than either uses of it.
+    let limit = below(3);
+    for lease in [&mut kept, &mut used] {
+        let lasted = lease.lasting(period);
+        lease.limit(limit);
+        assert!(lease.lasting(period) == lasted.min(limit));
+        lease.pass(period);
+        assert!(lease.flow() == lasted.min(limit));
+    }
 }

@@ -8,7 +8,9 @@ use super::*;
 
 /// The receiver is robot 5 for the sender, and the sender robot 5 for the receiver.
 const OTHER: NodeId = 5;
-/// How many steps are taken.
+/// The flow that the receiver sends back.
+const BACK: f64 = 0.05;
+/// How many steps are taken; one less from the link that is in use.
 const DEPTH: usize = 6;
 /// Flows that differ by less are the same.
 const LITTLE: f64 = 1e-9;
@@ -22,17 +24,16 @@ struct Link {
     grants: Vec<FlowGrant>,
 }
 
-/// The state that the lemma speaks of.
+/// The state that the lemma speaks of, for every control period from this one on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct View {
+    period: u32,
     held: f64,
-    granted: f64,
+    granted: Lease<f64>,
     asked: RequestNumber,
-    kept: f64,
+    kept: Lease<f64>,
     known: RequestNumber,
-    used_until: u32,
-    kept_until: u32,
-    /// What the receiver sends on beyond what it has granted and its rate.
+    /// What the receiver sends on beyond what it has granted and its rate, at the least in all these periods.
     spare: f64,
 }
 
@@ -42,6 +43,8 @@ enum Step {
     Plan(f64),
     /// The receiver sends on this flow.
     SendOn(f64),
+    /// The receiver sends a flow back, for this many control periods.
+    SendBack(u32),
     SenderSettles,
     ReceiverSettles,
     HearAsk(usize),
@@ -56,26 +59,52 @@ impl Link {
         Link { sender: router(), receiver: router(), asks, grants }
     }
 
+    /// The receiver has granted what it sends on, now sends something back, and hears what is asked next.
+    fn in_use() -> Self {
+        let mut link = Self::new();
+        for step in [
+            Step::SendOn(0.3),
+            Step::Plan(0.3),
+            Step::HearAsk(0),
+            Step::ReceiverSettles,
+            Step::HearGrant(0),
+            Step::SenderSettles,
+            Step::SendBack(3),
+            Step::Plan(0.3),
+            Step::HearAsk(1),
+        ] {
+            link.take(step);
+        }
+        link
+    }
+
     fn view(&self) -> View {
         let held = &self.sender.links[0].held;
         let kept = self.receiver.reservations.iter().find(|kept| kept.from == OTHER);
         let robot = &self.receiver;
+        let needs = robot.needs().into_iter();
         View {
+            period: self.sender.period,
             held: held.flow,
-            granted: held.granted,
+            granted: held.lease,
             asked: held.asked,
-            kept: kept.map_or(0.0, |kept| kept.flow),
+            kept: kept.map_or(Lease::default(), |kept| kept.lease),
             known: kept.map_or(RequestNumber::default(), |kept| kept.asked),
-            used_until: held.until,
-            kept_until: kept.map_or(0, |kept| kept.until),
-            spare: robot.held_outflow() - robot.granted_to_others() - robot.rate,
+            spare: needs
+                .map(|(period, needed)| robot.lasting_outflow(period) - needed)
+                .fold(f64::INFINITY, f64::min),
         }
     }
 
     fn steps(&self) -> Vec<Step> {
         let plans = [0.0, 0.1, 0.3].map(Step::Plan);
-        let rest =
-            [Step::SendOn(0.1), Step::SendOn(0.3), Step::SenderSettles, Step::ReceiverSettles];
+        let rest = [
+            Step::SendOn(0.1),
+            Step::SendOn(0.3),
+            Step::SendBack(3),
+            Step::SenderSettles,
+            Step::ReceiverSettles,
+        ];
         let times = [Step::Pass(1), Step::Pass(self.sender.lease() + 1)];
         let asks = (0..self.asks.len()).map(Step::HearAsk);
         let grants = (0..self.grants.len()).map(Step::HearGrant);
@@ -94,6 +123,11 @@ impl Link {
             Step::SendOn(flow) => {
                 receiver.links[1].share = flow / receiver.links[1].reliability;
                 receiver.ask_for_flows(&mut granted);
+            }
+            Step::SendBack(periods) => {
+                let RouteLink { share, reliability, held, .. } = &mut receiver.links[0];
+                *share = BACK / *reliability;
+                (held.flow, held.lease) = (BACK, Lease::of(BACK, receiver.period + periods));
             }
             Step::SenderSettles => sender.take_in_requests(&mut asked),
             Step::ReceiverSettles => receiver.take_in_requests(&mut granted),
@@ -130,61 +164,71 @@ impl Link {
 }
 
 impl View {
+    /// The control periods in which two states are compared: from that of the later one on, what holds becomes less
+    /// after these.
+    fn periods(&self, before: &View) -> impl Iterator<Item = u32> {
+        let leases = [self.granted, self.kept, before.granted, before.kept];
+        let ends = leases.map(|lease| [lease.until(), lease.end()]).into_iter().flatten();
+        let first = self.period;
+        ends.flat_map(|end| [end, end + 1]).chain([first]).filter(move |&period| period >= first)
+    }
+
     /// `before` and `after` of the lemma.
     fn is_invariant(&self, asks: &[FlowRequest], grants: &[FlowGrant]) -> bool {
         let asks = asks.iter().all(|ask| {
             ask.number <= self.asked
-                && (ask.number <= self.known || self.granted <= ask.held + LITTLE)
+                && (ask.number <= self.known || self.granted.flow() <= ask.held + LITTLE)
         });
         let grants = grants.iter().all(|grant| {
             grant.number != self.asked
                 || grant.number != self.known
-                || grant.flow <= self.kept + LITTLE && grant.until <= self.kept_until
+                || grant.until < self.period
+                || grant.flow <= self.kept.lasting(grant.until) + LITTLE
         });
-        self.held <= self.granted + LITTLE
-            && self.granted <= self.kept + LITTLE
+        let mut periods = self.periods(self);
+        self.held <= self.granted.flow() + LITTLE
+            && periods.all(|at| self.granted.lasting(at) <= self.kept.lasting(at) + LITTLE)
             && self.known <= self.asked
-            && (self.granted == 0.0 || self.used_until <= self.kept_until)
             && asks
             && grants
     }
 
     /// The sender uses no more than is granted, and what was granted before a request is void.
-    fn sender_steps(&self, after: &View, asked: &[FlowRequest], has_ended: bool) -> bool {
-        let granted = if has_ended { 0.0 } else { self.granted };
-        let rest = after.held <= granted + LITTLE && after.used_until == self.used_until;
-        rest && match asked {
-            [] => (after.granted, after.asked) == (granted, self.asked),
-            [ask] => {
-                (after.granted, after.asked) == (after.held, ask.number)
-                    && ask.number > self.asked
-                    && ask.held == after.held
-            }
+    fn sender_steps(&self, after: &View, asked: &[FlowRequest]) -> bool {
+        let limit = asked.first().map_or(f64::INFINITY, |ask| ask.held);
+        let left = |period| self.granted.lasting(period).min(limit);
+        let is_left = after.periods(self).all(|at| after.granted.lasting(at) == left(at));
+        let numbers = match asked {
+            [] => after.asked == self.asked,
+            [ask] => after.asked == ask.number && ask.number > self.asked && ask.held == after.held,
             _ => false,
-        }
+        };
+        is_left && numbers && after.held <= self.granted.lasting(after.period) + LITTLE
     }
 
     /// The receiver keeps as much or more, tells what it keeps, and has that to spare.
-    fn receiver_steps(&self, after: &View, granted: &[FlowGrant], has_ended: bool) -> bool {
-        let (kept, until) = if has_ended { (0.0, 0) } else { (self.kept, self.kept_until) };
+    fn receiver_steps(&self, after: &View, granted: &[FlowGrant]) -> bool {
         let tells = |grant: &FlowGrant| {
-            (grant.number, grant.flow, grant.until) == (after.known, after.kept, after.kept_until)
+            grant.number == after.known && grant.flow <= after.kept.lasting(grant.until)
         };
-        let is_silent = granted.is_empty();
-        let is_kept = if is_silent { after.kept == kept } else { after.kept >= kept };
-        let lasts = if is_silent { after.kept_until == until } else { after.kept_until >= until };
-        let knows = after.known == self.known || has_ended;
+        let mut kept =
+            after.periods(self).map(|at| (self.kept.lasting(at), after.kept.lasting(at)));
+        let is_kept = match granted {
+            [] => kept.all(|(before, after)| after == before),
+            _ => kept.all(|(before, after)| after >= before),
+        };
+        let knows = after.known == self.known || after.kept == Lease::default();
         let has_spare = self.spare < 0.0 || after.spare >= -LITTLE;
-        granted.iter().all(tells) && is_kept && lasts && knows && has_spare
+        granted.iter().all(tells) && is_kept && knows && has_spare
     }
 
     fn has_same_sender(&self, other: &View) -> bool {
-        let sender = |view: &View| (view.held, view.granted, view.asked, view.used_until);
+        let sender = |view: &View| (view.held, view.granted, view.asked);
         sender(self) == sender(other)
     }
 
     fn has_same_receiver(&self, other: &View) -> bool {
-        let receiver = |view: &View| (view.kept, view.known, view.kept_until);
+        let receiver = |view: &View| (view.kept, view.known);
         receiver(self) == receiver(other)
     }
 }
@@ -193,56 +237,44 @@ impl View {
 fn is_step(link: &Link, step: Step, next: &Link) -> bool {
     let (before, after) = (link.view(), next.view());
     let (asked, granted) = (&next.asks[link.asks.len()..], &next.grants[link.grants.len()..]);
-    let (period, robot) = (next.sender.period, &link.receiver);
-    let has_ended = before.used_until < period;
-    let is_dropped = before.kept_until < period;
+    let rests = (before.has_same_sender(&after), before.has_same_receiver(&after));
     match step {
-        Step::Plan(_) => {
-            before.sender_steps(&after, asked, has_ended) && before.has_same_receiver(&after)
+        Step::Plan(_) | Step::SenderSettles => before.sender_steps(&after, asked) && rests.1,
+        Step::SendOn(_) | Step::ReceiverSettles => {
+            before.receiver_steps(&after, granted) && rests.0
         }
-        Step::SenderSettles => {
-            before.sender_steps(&after, asked, false) && before.has_same_receiver(&after)
-        }
-        Step::SendOn(_) => {
-            before.receiver_steps(&after, granted, is_dropped) && before.has_same_sender(&after)
-        }
-        Step::ReceiverSettles => {
-            before.receiver_steps(&after, granted, false) && before.has_same_sender(&after)
-        }
+        Step::SendBack(_) => rests == (true, true),
         Step::HearAsk(at) => {
             let ask = link.asks[at];
-            let is_known = robot.reservations.iter().any(|kept| kept.from == OTHER);
-            let expected = if is_known && ask.number <= before.known {
-                before
-            } else {
-                let kept_until = if is_known { before.kept_until } else { robot.period };
-                View { kept: before.kept.min(ask.held), known: ask.number, kept_until, ..before }
-            };
-            expected.has_same_receiver(&after) && before.has_same_sender(&after)
+            let is_known = link.receiver.reservations.iter().any(|kept| kept.from == OTHER);
+            let is_new = !is_known || ask.number > before.known;
+            let limit = if is_new { ask.held } else { f64::INFINITY };
+            let left = |period| before.kept.lasting(period).min(limit);
+            let known = if is_new { ask.number } else { before.known };
+            let is_left = after.periods(&before).all(|at| after.kept.lasting(at) == left(at));
+            is_left && after.known == known && rests.0
         }
         Step::HearGrant(at) => {
             let grant = link.grants[at];
-            let expected = if grant.number == before.asked {
-                let used_until = before.used_until.max(grant.until);
-                View { granted: before.granted.max(grant.flow), used_until, ..before }
-            } else {
-                before
-            };
-            expected.has_same_sender(&after) && before.has_same_receiver(&after)
+            let counts = grant.number == before.asked;
+            let heard = |period| if counts && period <= grant.until { grant.flow } else { 0.0 };
+            let is_heard = after.periods(&before).all(|at| {
+                let granted = before.granted.lasting(at);
+                (granted..=granted.max(heard(at))).contains(&after.granted.lasting(at))
+            });
+            is_heard && (after.held, after.asked) == (before.held, before.asked) && rests.1
         }
         Step::Pass(_) => {
-            before.sender_steps(&after, asked, has_ended)
-                && before.receiver_steps(&after, granted, is_dropped)
+            before.sender_steps(&after, asked) && before.receiver_steps(&after, granted)
         }
     }
 }
 
-#[test]
-fn every_step_of_a_reservation_is_one_of_the_lemma() {
-    let first = Link::new();
+/// What happens within so many steps of a link.
+fn explore(first: Link, steps: usize) -> [usize; 4] {
     let mut known = BTreeSet::from([first.key()]);
-    let (mut layer, mut used, mut ended) = (vec![first], 0, 0);
-    for _ in 0..DEPTH {
+    let (mut layer, mut used, mut ended, mut parts) = (vec![first], 0, 0, 0);
+    for _ in 0..steps {
         let mut next_layer = Vec::new();
         for link in &layer {
             for step in link.steps() {
@@ -253,6 +285,7 @@ fn every_step_of_a_reservation_is_one_of_the_lemma() {
                 assert!(after.is_invariant(&next.asks, &next.grants), "{step:?}: {after:?}");
                 used += usize::from(after.held > before.held);
                 ended += usize::from(after.held < before.held);
+                parts += usize::from(after.held < before.held && before.granted.part().is_some());
                 if known.insert(next.key()) {
                     next_layer.push(next);
                 }
@@ -260,5 +293,13 @@ fn every_step_of_a_reservation_is_one_of_the_lemma() {
         }
         layer = next_layer;
     }
-    assert!(known.len() > 1_000 && used > 10 && ended > 0, "{} {used} {ended}", known.len());
+    [known.len(), used, ended, parts]
+}
+
+#[test]
+fn every_step_of_a_reservation_is_one_of_the_lemma() {
+    let [known, used, ended, _] = explore(Link::new(), DEPTH);
+    assert!(known > 1_000 && used > 10 && ended > 0, "{known} states, {used}, {ended}");
+    let [known, .., parts] = explore(Link::in_use(), DEPTH - 1);
+    assert!(known > 1_000 && parts > 0, "{known} states, {parts}");
 }

@@ -1,6 +1,7 @@
 //! Which flows a robot plans, asks for, grants and uses (reservation), and how it routes.
 
 use pleach_continuous::network::LinkReliability as _;
+use pleach_discrete::network::reservation::Lease;
 
 use super::super::super::message::Message;
 use super::super::MissionEvent;
@@ -196,7 +197,7 @@ fn grants_end_with_their_lease() {
     let (mut robot, _) = granted(0.3);
     let mut outputs = Outputs::of(0);
     robot.ask_for_flows(&mut outputs);
-    let until = robot.reservations[0].until;
+    let until = robot.reservations[0].lease.until();
     for (period, senders) in [(until, 1), (until + 1, 0)] {
         robot.period = period;
         robot.ask_for_flows(&mut outputs);
@@ -219,11 +220,9 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
     let until = |end: u32, kept: Option<(f64, u32)>| {
         let (mut robot, _) = granted(0.3);
         let mut outputs = Outputs::of(0);
-        robot.links[1].held.until = end;
+        robot.links[1].held.lease = Lease::of(f64::INFINITY, end);
         match kept {
-            Some((flow, until)) => {
-                (robot.reservations[0].flow, robot.reservations[0].until) = (flow, until);
-            }
+            Some((flow, until)) => robot.reservations[0].lease = Lease::of(flow, until),
             None => robot.reservations.clear(),
         }
         let number = RequestNumber { period: NOW, number: 2 };
@@ -237,9 +236,58 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
     assert_eq!(until(NOW + 99, None), (0.2, NOW + lease));
     assert_eq!(until(NOW + 3, None), (0.2, NOW + 3));
     assert_eq!(until(NOW + 3, Some((0.1, NOW + 2))), (0.2, NOW + 3));
-    // What has been promised for longer is not promised again, and nothing is added to it.
-    assert_eq!(until(NOW + 3, Some((0.1, NOW + 5))), (0.1, NOW + 5));
-    assert_eq!(until(NOW + 3, Some((0.0, NOW + 5))), (0.0, NOW + 5));
+    // What has been promised for longer stays, and what is added to it lasts no longer.
+    assert_eq!(until(NOW + 3, Some((0.1, NOW + 5))), (0.2, NOW + 3));
+    assert_eq!(until(NOW + 5, Some((0.2, NOW + 3))), (0.2, NOW + 5));
+}
+
+/// Where a robot sends back some of what another sends to it, neither grant can be renewed by the other one. What its
+/// other flows carry is granted for longer: all of a third robot's, and of the other's what it does not send back.
+#[test]
+fn what_is_sent_back_carries_no_part_that_is_granted_for_longer() {
+    let told = |to_access_point: f64| {
+        let (mut robot, _) = granted(to_access_point - 0.1);
+        let mut outputs = Outputs::of(0);
+        let back = &mut robot.links[0];
+        back.share = 0.1 / back.reliability;
+        (back.held.flow, back.held.lease) = (0.1, Lease::of(0.1, NOW + 3));
+        robot.reservations[0].lease = Lease::of(0.15, NOW + 3);
+        let number = RequestNumber { period: NOW, number: 2 };
+        robot.hear_request(5, FlowRequest { number, held: 0.15, wanted: 0.15 });
+        robot.hear_request(4, FlowRequest { number, held: 0.0, wanted: 0.0 });
+        robot.reservations[0].lease = Lease::of(0.05, NOW + 3);
+        robot.take_in_requests(&mut outputs);
+        let grants = grants(&mut outputs).into_iter();
+        let grants = grants.map(|(to, it)| (to, (it.flow * 100.0).round() / 100.0, it.until - NOW));
+        grants.collect::<Vec<_>>()
+    };
+    let lease = router().lease();
+    let (four, five) = (Destination::One(4), Destination::One(5));
+    // Rate 0.1, 0.05 more than goes back, and 0.05.
+    assert_eq!(told(0.2), [(four, 0.05, lease), (five, 0.15, 3), (five, 0.05, lease)]);
+    assert_eq!(told(0.19), [(four, 0.05, 3), (five, 0.15, 3)]);
+    assert_eq!(
+        told(0.3),
+        [(four, 0.05, lease), (five, 0.15, lease)],
+        "what goes back is not needed"
+    );
+}
+
+/// A grant of a part holds when all of it has ended.
+#[test]
+fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
+    let (mut sender, FlowRequest { number, wanted, .. }) = asking();
+    let mut outputs = Outputs::of(0);
+    let part = wanted / 4.0;
+    for (flow, until) in [(wanted, NOW + 2), (part, NOW + 4)] {
+        sender.hear_grant(5, FlowGrant { number, flow, until });
+    }
+    sender.take_in_requests(&mut outputs);
+    for (later, flow) in [(2, wanted), (3, part), (4, part), (5, 0.0)] {
+        sender.period = NOW + later;
+        sender.ask_for_flows(&mut outputs);
+        assert_eq!(sender.links[0].held.flow, flow, "{later} periods later");
+    }
 }
 
 /// An access point takes everything, as long as it has been heard in two leases.
@@ -439,7 +487,7 @@ fn a_flow_takes_the_place_of_another_without_time_or_flow_to_spare() {
         // It has promised another robot something for a while, so that its own flows have to last.
         let number_of_other = RequestNumber { period: NOW, number: 1 };
         robot.hear_request(6, FlowRequest { number: number_of_other, held: 0.0, wanted: 0.0 });
-        robot.reservations[0].until = NOW + LEASE;
+        robot.reservations[0].lease = Lease::of(0.0, NOW + LEASE);
         robot.hear_grant(5, FlowGrant { number, flow: robot.rate, until: NOW + lasts });
         robot.take_in_requests(&mut outputs);
         robot.links.iter().map(|link| link.held.flow / robot.rate).collect::<Vec<_>>()
