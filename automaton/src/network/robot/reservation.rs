@@ -22,9 +22,9 @@
 //! Σ_j (F_ij that lasts until t) − Σ_j (granted to j until t) − r_i ≥ 0
 //! ```
 //!
-//! Where two robots send to each other, each grant waits for the other one to be renewed, and none is. Such a robot
-//! renews what others send beyond what it sends back to them, which the rest of its flows carries; after a lease
-//! that is left.
+//! Where two robots send to each other, neither grant can be renewed before the other one. Each robot then renews a
+//! part: what the other one sends beyond what it is sent back, which the rest of the robot's flows carries. When the
+//! leases end, that part is left.
 
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Lease, Spare};
@@ -197,8 +197,8 @@ fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
     taken_over
 }
 
-/// What another may use for longer than all that it has been granted: what it is sent back does not count, nor what has
-/// been promised less.
+/// The part of a grant that does not depend on what is sent back to the robot that it is given to; no less than has been
+/// promised already for longer than all of it.
 fn part_for_longer(lease: &Lease<f64>, from: NodeId, links: &[RouteLink]) -> f64 {
     let sent_back = link_at(links, from).map_or(0.0, |at| links[at].held.flow);
     let promised = lease.part().map_or(0.0, |(part, _)| part);
@@ -372,7 +372,7 @@ impl Robot {
     }
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
-    /// granted for as long as these last; a part of it for longer where it sends some of it back.
+    /// granted for as long as these last; [a part](part_for_longer) for longer where it sends some of it back.
     fn grant_flows(&mut self, outputs: &mut Out) {
         let needed = self.needed_outflow();
         let wanted =
@@ -393,7 +393,9 @@ impl Robot {
             }
             if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
                 lease.promise(before, until);
-                part.map(|(flow, longer)| lease.promise(flow, longer));
+                if let Some((flow, longer)) = part {
+                    lease.promise(flow, longer);
+                }
                 let told = lease.part().filter(|told| part == Some(*told));
                 for (flow, until) in std::iter::once((lease.flow(), lease.until())).chain(told) {
                     let grant = FlowGrant { number: kept.asked, flow, until };

@@ -42,13 +42,13 @@ fn a_lease_ends_at_the_sender_first() {
     let period = any_period(5);
     let mut told = [(below(3), any_period(3)); 3];
     let mut kept = Lease::of(told[0].0, told[0].1);
-    for at in 1..3 {
+    for grant in &mut told[1..] {
         let (flow, until) = (below(3), any_period(4));
         let before = kept;
         if kept.promise(flow, until) {
             let more = if period <= until { flow } else { 0 };
             assert!(kept.lasting(period) == before.lasting(period).max(more));
-            told[at] = (flow, until);
+            *grant = (flow, until);
         } else {
             assert!(kept == before);
         }
