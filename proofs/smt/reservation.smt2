@@ -49,7 +49,8 @@
 (assert (not after))
 (check-sat) ; expect unsat
 (pop)
-; It asks: what was granted before is void, beyond what is in use now, some of which may end before.
+; It asks: what was granted before is void, beyond what is in use now; some of that may end before the period that is
+; looked at.
 (push)
 (assert (and sends-ask receiver-rests (= held2 held) (> asked2 asked)
              (= (number new) asked2) (>= (flow new) held)
@@ -111,8 +112,8 @@
 (pop)
 
 ; So it is in the control periods ahead, if no grant is renewed: what is given ends after `first` in part and
-; after `last` altogether, and of two flows a lasts until `end-a` and b until `end-b`. What is carried in these
-; two is carried up to the last.
+; after `last` altogether, and of two flows (one with a part is two) a lasts until `end-a` and b until `end-b`.
+; What is carried in these two periods is carried up to the last.
 (declare-const a Real) (declare-const b Real) (declare-const end-a Int) (declare-const end-b Int)
 (declare-const all Real) (declare-const part Real) (declare-const first Int) (declare-const last Int)
 (declare-const now Int)
@@ -124,13 +125,13 @@
 (assert (and (carried first) (carried last) (<= now last) (not (carried now))))
 (check-sat) ; expect unsat
 (pop)
-; What is carried now only is not.
+; What is carried only now need not be carried at the last period.
 (push)
 (assert (and (carried now) (< now last) (not (carried last))))
 (check-sat) ; expect sat
 (pop)
 
-; Two robots send each other `there` and `back`, and have granted that; each has granted others something, too, and
+; The first robot sends `there` to the second, which sends `back` no more than that; so much is granted. Each has granted others something, too, and
 ; sends to others. What goes there beyond what comes back is carried by what the second robot sends to others, and is
 ; enough for the first one.
 (declare-const there Real) (declare-const back Real)

@@ -1,7 +1,7 @@
 //! Reservation: what may be granted of a flow, and until when a grant holds.
 //!
 //! A robot grants no more than it has to spare, so that what it sends on carries what it has granted; and a grant
-//! says until when the receiver keeps it, which it does: so it ends at the sender first. The lemma
+//! says until when the receiver keeps it: it never ends later at the sender. The lemma
 //! `reservation.smt2` says why that is safe whatever becomes of messages. Flows are numbers of any kind.
 
 use std::ops::{Add, Sub};
@@ -49,8 +49,8 @@ where
 
 /// What may be used of a flow, and until when: all of it for a while, and a part of it for longer.
 ///
-/// The receiver of a flow keeps it, the sender uses it. Both enter every promise, the receiver before the sender and
-/// the sender perhaps never: so in no control period the sender may use more than the receiver keeps.
+/// The receiver of a flow keeps it, the sender uses it. The receiver enters a promise before it tells it, the sender
+/// enters what it hears: so in no control period may the sender use more than the receiver keeps.
 ///
 /// ```
 /// use pleach_discrete::network::reservation::Lease;

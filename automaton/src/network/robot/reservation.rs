@@ -10,21 +10,23 @@
 //! Σ_j F_ij − Σ_j (granted to j) − r_i ≥ 0
 //! ```
 //!
-//! holds from the first period in which it does, whatever becomes of messages: a message that is lost
-//! leaves flows as they are. A grant answers one request, and a new request voids the grants before it,
-//! so that late messages and copies change nothing.
+//! holds from the first period in which it does, as long as grants are renewed: a message that is lost
+//! leaves flows as they are until a lease ends. A request is answered by a grant, or by two, of all and of a part;
+//! a new request voids the grants before it, so that late messages and copies change nothing.
 //!
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
-//! where grants are not renewed, flows end at those who send first. So what holds in any control period ahead is
-//! carried then:
+//! where grants are not renewed, flows end at those who send first. If c_i ≥ 0 now,
 //!
 //! ```text
 //! Σ_j (F_ij that lasts until t) − Σ_j (granted to j until t) − r_i ≥ 0
 //! ```
 //!
-//! Where two robots send to each other, neither grant can be renewed before the other one. Each robot then renews a
-//! part: what the other one sends beyond what it is sent back, which the rest of the robot's flows carries. When the
-//! leases end, that part is left.
+//! holds in every control period t up to the last for which the robot has granted anything. A robot with c_i < 0 grants
+//! no more, and renews what it has granted for as long as its flows last.
+//!
+//! Where A and B send to each other, each grant waits for the other one to be renewed. So B also grants a part for
+//! longer: F_AB − F_BA, if its flows to others carry that. When the leases end, the difference is left. In a circle of
+//! three or more robots the flows still end with their leases.
 
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Lease, Spare};
@@ -72,15 +74,15 @@ pub struct FlowRequest {
     pub wanted: f64,
 }
 
-/// An answer to a request for a flow.
+/// An answer to a request for a flow. Grants that answer the same request hold beside each other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FlowGrant {
     /// The number of the request.
     pub number: RequestNumber,
-    /// The largest F_ij that the sender may use.
+    /// The F_ij that the sender may use.
     pub flow: f64,
-    /// The last control period in which it may.
+    /// The last control period in which it may use that much.
     pub until: u32,
 }
 
@@ -176,7 +178,8 @@ impl HeldFlow {
     }
 }
 
-/// Raises flows and lowers others by as much, at once, where that takes no more time. A sender that has neither time
+/// Raises flows and lowers others by as much, at once, where that takes no more time, and what is raised lasts as long
+/// as what is lowered, or as anything that is promised. A sender that has neither time
 /// nor flows to spare could not leave a link that hardly carries anything otherwise. Returns how much is taken over.
 fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
     let mut taken_over = 0.0;
