@@ -179,8 +179,8 @@ impl HeldFlow {
 }
 
 /// Raises flows and lowers others by as much, at once, where that takes no more time, and what is raised lasts as long
-/// as what is lowered, or as anything that is promised. A sender that has neither time
-/// nor flows to spare could not leave a link that hardly carries anything otherwise. Returns how much is taken over.
+/// as what is lowered, or as anything that is promised. A sender that has neither time nor flows to spare could not
+/// leave a link that hardly carries anything otherwise. Returns how much is taken over.
 fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
     let mut taken_over = 0.0;
     let count = links.len();
@@ -198,6 +198,11 @@ fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
         taken_over += taken;
     }
     taken_over
+}
+
+/// The control periods after which less of a lease holds.
+fn ends(lease: &Lease<f64>) -> [u32; 2] {
+    [lease.until(), lease.end()]
 }
 
 /// The part of a grant that does not depend on what is sent back to the robot that it is given to; no less than has been
@@ -427,8 +432,8 @@ impl Robot {
             let parts = self.reservations.iter().map(|kept| part(kept, period)).sum::<f64>();
             self.lasting_outflow(period) >= self.rate + parts - SAME_FLOW
         };
-        let needs = self.needs().into_iter().map(|(period, _)| period);
-        let short = needs.filter(|&period| period > until && !is_carried(period)).min();
+        let promised = self.ends_of_promises().filter(|&end| end > until);
+        let short = promised.filter(|&end| !is_carried(end)).min();
         let ends = self.ends_of_flows().map(|end| end.min(self.last_to_grant()));
         let carries =
             |&end: &u32| end > until && short.is_none_or(|it| end < it) && is_carried(end);
@@ -468,18 +473,22 @@ impl Robot {
     /// The control periods after which less flows if no grant is renewed.
     fn ends_of_flows(&self) -> impl Iterator<Item = u32> {
         let flows = self.links_in_use().filter(|link| link.held.flow > 0.0);
-        flows.map(|link| link.held.lease).flat_map(|lease| [lease.until(), lease.end()])
+        flows.flat_map(|link| ends(&link.held.lease))
+    }
+
+    /// The control periods after which less is promised if no grant is renewed.
+    fn ends_of_promises(&self) -> impl Iterator<Item = u32> {
+        self.reservations.iter().flat_map(|kept| ends(&kept.lease))
     }
 
     /// What its own flows have to carry, up to each control period after which that is less: its rate, and what others
     /// may send if no grant is renewed.
     fn needs(&self) -> Vec<(u32, f64)> {
-        let leases = self.reservations.iter().map(|kept| kept.lease);
-        let ends = leases.clone().flat_map(|lease| [lease.until(), lease.end()]);
-        let mut ends: Vec<u32> = ends.chain([self.period]).collect();
+        let mut ends: Vec<u32> = self.ends_of_promises().chain([self.period]).collect();
         ends.sort_unstable();
         ends.dedup();
-        let promised = |period| leases.clone().map(|lease| lease.lasting(period)).sum::<f64>();
+        let kept = || self.reservations.iter();
+        let promised = |period| kept().map(|kept| kept.lease.lasting(period)).sum::<f64>();
         ends.into_iter().map(|end| (end, promised(end) + self.rate)).collect()
     }
 

@@ -168,7 +168,7 @@ impl View {
     /// after these.
     fn periods(&self, before: &View) -> impl Iterator<Item = u32> {
         let leases = [self.granted, self.kept, before.granted, before.kept];
-        let ends = leases.map(|lease| [lease.until(), lease.end()]).into_iter().flatten();
+        let ends = leases.into_iter().flat_map(|lease| ends(&lease));
         let first = self.period;
         ends.flat_map(|end| [end, end + 1]).chain([first]).filter(move |&period| period >= first)
     }
@@ -270,7 +270,8 @@ fn is_step(link: &Link, step: Step, next: &Link) -> bool {
     }
 }
 
-/// What happens within so many steps of a link.
+/// Checks every step within this many from a state. Returns the number of states reached, and of the steps in which a
+/// flow rises, in which one falls, and in which one falls of which a part was granted for longer.
 fn explore(first: Link, steps: usize) -> [usize; 4] {
     let mut known = BTreeSet::from([first.key()]);
     let (mut layer, mut used, mut ended, mut parts) = (vec![first], 0, 0, 0);
