@@ -50,6 +50,9 @@ impl AccessPoint {
     pub(super) fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
         let is_later = roll.called > self.roll.called;
         self.roll.merge(roll);
+        if is_later {
+            self.beacon_told = 0;
+        }
         // Nobody but the first access point calls rolls: it has begun again since.
         if is_later && (self.is_new || self.is_first()) {
             self.recall(roll, self.period.max(period));

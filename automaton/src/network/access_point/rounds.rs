@@ -31,7 +31,7 @@ pub enum RoundAct {
     Deliberate,
     /// The first access point sends the user the newest notice.
     TellUser,
-    /// It sends its public state.
+    /// It tells its public state, unless it has told it often enough.
     TellBeacon,
     /// After the first rounds, the nodes of which it has heard nothing are out of range.
     Forget,
@@ -90,6 +90,7 @@ impl AccessPoint {
                 RoundAct::RestartClock => {
                     (self.clock, self.is_behind) = (0.0, false);
                     self.period = self.period.saturating_add(1);
+                    self.beacon_told = 0;
                     self.expect_all();
                 }
                 RoundAct::CallRoll => self.call_roll()?,
@@ -103,11 +104,7 @@ impl AccessPoint {
                     }
                 }
                 RoundAct::TellUser => self.tell_user(outputs),
-                RoundAct::TellBeacon => {
-                    let (period, roll) = (self.period, self.roll.clone());
-                    let (confirmed, beacon) = (Some(period), self.next_beacon());
-                    outputs.broadcast(Message::Beacon { period, roll, confirmed, beacon });
-                }
+                RoundAct::TellBeacon => self.tell_beacon(outputs),
             }
         }
         self.is_new &= self.round() > 0;

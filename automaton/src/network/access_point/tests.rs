@@ -112,7 +112,7 @@ fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
     let mut told = |period: u32, roll: &Roll, beacons: Vec<Beacon>| {
         beacons.into_iter().for_each(|beacon| point.hear(period, roll, &Arc::new(beacon)));
         point.deliberate().expect("guards have values");
-        point.next_beacon().wrecks.to_vec()
+        point.public_state().wrecks.to_vec()
     };
     let wreck = Wreck::heard;
     let (west, east) = (Point::new(4.0, 5.0), Point::new(6.0, 5.0));
