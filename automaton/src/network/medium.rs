@@ -104,6 +104,16 @@ impl Medium<Message, Point> for Radio {
         self.sent.push(envelope);
     }
 
+    fn send_all(&mut self, envelopes: &mut Vec<Envelope<Message>>) {
+        let may_be_answered =
+            |envelope: &Envelope<Message>| envelope.message.may_be_answered_at_once();
+        self.expects_answer |= envelopes.iter().any(may_be_answered);
+        match self.sent.is_empty() {
+            true => std::mem::swap(&mut self.sent, envelopes),
+            false => self.sent.append(envelopes),
+        }
+    }
+
     fn time_to_arrival(&self) -> Option<f64> {
         (!self.sent.is_empty()).then_some(0.0)
     }

@@ -8,7 +8,7 @@ use super::{Delivery, Envelope, NodeId};
 pub struct Mail<M> {
     sent: Vec<Envelope<M>>,
     /// The places of the messages among those sent.
-    letters: Vec<usize>,
+    letters: Vec<u32>,
     /// Where those of each node end.
     ends: Vec<usize>,
 }
@@ -40,7 +40,7 @@ impl<M> Mail<M> {
             count += std::mem::replace(end, count);
         }
         letters.resize(count, 0);
-        for (letter, receivers) in receivers.into_iter().enumerate() {
+        for (letter, receivers) in (0..).zip(receivers) {
             for &to in receivers {
                 letters[ends[to]] = letter;
                 ends[to] += 1;
@@ -63,7 +63,7 @@ impl<M> Mail<M> {
         let end = |node: NodeId| self.ends.get(node).copied().unwrap_or(self.letters.len());
         let begin = to.checked_sub(1).map_or(0, end);
         self.letters[begin..end(to)].iter().map(move |&letter| {
-            let Envelope { from, message, .. } = &self.sent[letter];
+            let Envelope { from, message, .. } = &self.sent[letter as usize];
             Delivery { from: *from, to, message }
         })
     }

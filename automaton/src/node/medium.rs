@@ -23,6 +23,11 @@ pub trait Medium<M, B> {
     /// A node sends a message.
     fn send(&mut self, envelope: Envelope<M>);
 
+    /// Nodes send messages, in this order; none is left here. A medium that keeps them can take them all at once.
+    fn send_all(&mut self, envelopes: &mut Vec<Envelope<M>>) {
+        envelopes.drain(..).for_each(|envelope| self.send(envelope));
+    }
+
     /// Seconds until the next message arrives: 0 if one arrives now, `None` if none is on its way.
     fn time_to_arrival(&self) -> Option<f64>;
 

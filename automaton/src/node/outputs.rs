@@ -73,6 +73,11 @@ impl<M, R> Outputs<M, R> {
         self.sent.drain(..)
     }
 
+    /// The messages, in the order in which they were sent, for a medium to take.
+    pub(super) const fn sent_mut(&mut self) -> &mut Vec<Envelope<M>> {
+        &mut self.sent
+    }
+
     /// Takes the reports with the nodes that made them, in their order.
     pub fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, R)> {
         self.reports.drain(..)

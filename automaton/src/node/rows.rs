@@ -111,7 +111,7 @@ impl<N: Node> Rows<N> {
     pub fn sense(&mut self, id: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
         let Rows { nodes, seats, left, .. } = self;
         let Some((node, seat)) = nodes.get_mut(id).zip(seats.get_mut(id)) else { return Ok(()) };
-        node.step(Input::Sensed(sensed), left[0].outputs.now_of(id))?;
+        seat.step(node, Input::Sensed(sensed), left[0].outputs.now_of(id))?;
         seat.ask(node);
         Ok(())
     }
@@ -130,17 +130,14 @@ impl<N: Node> Rows<N> {
         let Delivery { from, to, message } = delivery;
         let Some((node, seat)) = nodes.get_mut(to).zip(seats.get_mut(to)) else { return Ok(()) };
         seat.hear(number, 1);
-        node.step(Input::Heard { from, message }, left[0].outputs.now_of(to))?;
+        seat.step(node, Input::Heard { from, message }, left[0].outputs.now_of(to))?;
         seat.ask(node);
         Ok(())
     }
 
     /// Gives the medium what the nodes have sent, in their order.
     pub fn send<B>(&mut self, medium: &mut impl Medium<N::Message, B>) {
-        for envelope in self.left.iter_mut().flat_map(|left| left.outputs.drain_sent()) {
-            self.seats[envelope.from].traffic.sent += 1;
-            medium.send(envelope);
-        }
+        self.left.iter_mut().for_each(|left| medium.send_all(left.outputs.sent_mut()));
     }
 
     /// What the nodes have told observers since the last call, in its order.
@@ -170,7 +167,7 @@ impl<M> Steps<'_, M> {
             if let Some((mut mail, number)) = heard.filter(|(mail, _)| mail.len() > 0) {
                 seat.hear(number, mail.len());
                 mail.try_for_each(|Delivery { from, message, .. }| {
-                    node.step(Input::Heard { from, message }, outputs.now_of(id))
+                    seat.step(node, Input::Heard { from, message }, outputs.now_of(id))
                 })?;
                 seat.ask(node);
             }
@@ -183,6 +180,20 @@ impl<M> Steps<'_, M> {
 }
 
 impl Seat {
+    /// The node takes a step; what it sends is counted.
+    #[inline]
+    fn step<N: Node>(
+        &mut self,
+        node: &mut N,
+        input: Input<'_, N::Message, N::Sense>,
+        outputs: &mut Outputs<N::Message, N::Report>,
+    ) -> Result<(), N::Error> {
+        let before = outputs.sent().len();
+        let result = node.step(input, outputs);
+        self.traffic.sent += (outputs.sent().len() - before) as u64;
+        result
+    }
+
     /// The node hears this many messages in a delivery.
     const fn hear(&mut self, delivery: usize, messages: usize) {
         self.heard = delivery;
@@ -198,7 +209,7 @@ impl Seat {
     ) -> Result<(), N::Error> {
         let passed = round - self.ticked - 1;
         self.ticked = round;
-        node.step(Input::Tick { passed }, outputs)?;
+        self.step(node, Input::Tick { passed }, outputs)?;
         self.ask(node);
         Ok(())
     }
