@@ -301,6 +301,7 @@ impl Robot {
             clock: _,
             routing: _,
             links: _,
+            flows: _,
             upstream: _,
             expected_link: _,
             dual_step_size: _,

@@ -93,7 +93,7 @@ use duties::Label;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
-use reservation::Reservation;
+use reservation::{HeldFlow, Reservation};
 use rounds::Rounds;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
@@ -173,6 +173,8 @@ pub struct Robot {
     demands: Vec<(NodeId, Option<f64>)>,
     /// In this sweep.
     demands_passed_on: usize,
+    /// Its flows in use, and those that it has asked for.
+    flows: Vec<HeldFlow>,
     reservations: Vec<Reservation>,
     last_request: RequestNumber,
 
@@ -363,6 +365,7 @@ impl Robot {
             followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            flows: Vec::new(),
             dual_step_size: 0.0,
             told_outflow: 0.0,
             upstream: None,

@@ -86,9 +86,14 @@ pub struct FlowGrant {
     pub until: u32,
 }
 
-/// What a sender uses of a link, and what it may use.
+/// What a sender uses of a link, and what it may use. It is kept from the first plan with a flow on, as long as there
+/// is a link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct HeldFlow {
+    /// The receiver.
+    to: NodeId,
+    /// R_ij.
+    reliability: f64,
     /// F_ij as it is in use.
     pub flow: f64,
     /// F_ij as it is planned.
@@ -125,7 +130,17 @@ impl Reservation {
 }
 
 impl HeldFlow {
-    /// Whether packets flow, or shall. Other links have nothing to raise, to lower or to keep.
+    /// None yet, to this node.
+    fn to(to: NodeId) -> Self {
+        HeldFlow { to, ..HeldFlow::default() }
+    }
+
+    /// T_ij.
+    pub fn load(&self) -> f64 {
+        self.flow / self.reliability
+    }
+
+    /// Whether packets flow, or shall. Others have nothing to raise, to lower or to keep.
     const fn is_in_use(&self) -> bool {
         self.flow > 0.0 || self.wanted > 0.0
     }
@@ -181,23 +196,28 @@ impl HeldFlow {
 /// Raises flows and lowers others by as much, at once, where that takes no more time, and what is raised lasts as long
 /// as what is lowered, or as anything that is promised. A sender that has neither time nor flows to spare could not
 /// leave a link that hardly carries anything otherwise. Returns how much is taken over.
-fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
+fn replace_flows(flows: &mut [&mut HeldFlow], promised: u32) -> f64 {
     let mut taken_over = 0.0;
-    let count = links.len();
+    let count = flows.len();
     for (more, less) in (0..count).flat_map(|more| (0..count).map(move |less| (more, less))) {
-        if !links[more].held.can_rise() || !links[less].held.can_fall() {
+        if !flows[more].can_rise() || !flows[less].can_fall() {
             continue;
         }
-        let Ok([more, less]) = links.get_disjoint_mut([more, less]) else { continue };
-        let counts_until = less.held.lease.end().min(promised);
-        if more.reliability < less.reliability || more.held.lease.until() < counts_until {
+        let Ok([more, less]) = flows.get_disjoint_mut([more, less]) else { continue };
+        let needed_until = less.lease.end().min(promised);
+        if more.reliability < less.reliability || more.lease.until() < needed_until {
             continue;
         }
-        let taken = more.held.raise((less.held.flow - less.held.wanted).max(0.0));
-        less.held.lower(taken);
+        let taken = more.raise((less.flow - less.wanted).max(0.0));
+        less.lower(taken);
         taken_over += taken;
     }
     taken_over
+}
+
+/// Where the flow to `node` is among flows, which are in the order of their receivers; or where it belongs.
+fn place_of(flows: &[HeldFlow], node: NodeId) -> Result<usize, usize> {
+    flows.binary_search_by_key(&node, |held| held.to)
 }
 
 /// The control periods after which less of a lease holds.
@@ -207,8 +227,8 @@ fn ends(lease: &Lease<f64>) -> [u32; 2] {
 
 /// The part of a grant that does not depend on what is sent back to the robot that it is given to; no less than has been
 /// promised already for longer than all of it.
-fn part_for_longer(lease: &Lease<f64>, from: NodeId, links: &[RouteLink]) -> f64 {
-    let sent_back = link_at(links, from).map_or(0.0, |at| links[at].held.flow);
+fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow]) -> f64 {
+    let sent_back = place_of(flows, from).map_or(0.0, |at| flows[at].flow);
     let promised = lease.part().map_or(0.0, |(part, _)| part);
     (lease.flow() - sent_back).max(promised)
 }
@@ -222,23 +242,25 @@ impl Robot {
         self.reservations.iter_mut().for_each(|kept| kept.lease.pass(period));
         self.reservations.retain(|kept| kept.lease.until() >= period);
         for at in 0..self.links.len() {
-            let link = &self.links[at];
-            let to = link.to;
+            let RouteLink { to, reliability, is_retiring, .. } = self.links[at];
             // Where flows are not reported, the plan can be none.
-            let planned = link.flow().clamp(0.0, link.reliability);
-            let can_raise = planned != 0.0 && knows_load && self.knows_place_of(to);
-            if to >= robots {
-                // An access point takes everything, as long as it is there.
-                let heard_in = self.neighbour(to).map_or(0, |known| known.heard_in);
-                let until = heard_in.saturating_add(patience);
-                self.links[at].held.lease = Lease::of(f64::INFINITY, until);
+            let planned = self.links[at].flow().clamp(0.0, reliability);
+            if planned == 0.0 && self.flow_to(to).is_none() {
+                continue;
             }
-            let link = &mut self.links[at];
-            let held = &mut link.held;
+            let can_raise = planned != 0.0 && knows_load && self.knows_place_of(to);
+            let heard_in =
+                (to >= robots).then(|| self.neighbour(to).map_or(0, |known| known.heard_in));
+            let held = self.held_flow(to);
+            held.reliability = reliability;
+            if let Some(heard_in) = heard_in {
+                // An access point takes everything, as long as it is there.
+                held.lease = Lease::of(f64::INFINITY, heard_in.saturating_add(patience));
+            }
             held.lease.pass(period);
             held.flow = held.flow.min(held.lease.flow());
             let most = if can_raise { planned } else { planned.min(held.flow) };
-            held.wanted = if link.is_retiring { 0.0 } else { most };
+            held.wanted = if is_retiring { 0.0 } else { most };
             held.is_due = to < robots && (held.is_in_use() || held.is_open);
         }
         self.settle_flows(outputs);
@@ -248,8 +270,8 @@ impl Robot {
     /// does not, a receiver may have made a move to which it has consented: the load is certified for what
     /// flows, and for no more.
     fn knows_load(&self) -> bool {
-        let mut receivers = self.links.iter().filter(|link| link.held.flow > 0.0);
-        receivers.all(|link| self.knows_place_of(link.to))
+        let mut flowing = self.flows.iter().filter(|held| held.flow > 0.0);
+        flowing.all(|held| self.knows_place_of(held.to))
     }
 
     /// Takes in the requests and grants of the round; asks again, every few rounds, where there is no
@@ -257,7 +279,7 @@ impl Robot {
     pub(super) fn take_in_requests(&mut self, outputs: &mut Out) {
         let is_late = self.round_count.is_for_asking_again();
         if is_late {
-            self.links.iter_mut().for_each(|link| link.held.is_due = link.held.is_open);
+            self.flows.iter_mut().for_each(|held| held.is_due = held.is_open);
         }
         if is_late || self.has_flow_news {
             self.settle_flows(outputs);
@@ -266,17 +288,35 @@ impl Robot {
 
     /// Whether every request has been answered.
     pub(super) fn requests_are_answered(&self) -> bool {
-        !self.links.iter().any(|link| link.held.is_open)
+        !self.flows.iter().any(|held| held.is_open)
     }
 
     /// Whether packets flow to this node.
     pub(super) fn sends_to(&self, node: NodeId) -> bool {
-        self.link(node).is_some_and(|link| link.held.flow > 0.0)
+        self.flow_to(node).is_some_and(|held| held.flow > 0.0)
     }
 
     /// Whether it has ever asked this node for a flow over the link that it has to it now.
     pub(super) fn has_asked(&self, node: NodeId) -> bool {
-        self.link(node).is_some_and(|link| link.held.asked != RequestNumber::default())
+        self.flow_to(node).is_some_and(|held| held.asked != RequestNumber::default())
+    }
+
+    fn flow_to(&self, node: NodeId) -> Option<&HeldFlow> {
+        place_of(&self.flows, node).ok().map(|at| &self.flows[at])
+    }
+
+    /// The flow to a node to which there is a link.
+    pub(super) fn held_flow(&mut self, node: NodeId) -> &mut HeldFlow {
+        let at = place_of(&self.flows, node).unwrap_or_else(|at| {
+            self.flows.insert(at, HeldFlow::to(node));
+            at
+        });
+        &mut self.flows[at]
+    }
+
+    /// What is held of a link ends with it.
+    pub(super) fn drop_flows_without_link(&mut self) {
+        self.flows.retain(|held| link_at(&self.links, held.to).is_some());
     }
 
     /// The robots that may send to this one.
@@ -288,12 +328,12 @@ impl Robot {
         let RequestNumber { period, number } = self.last_request;
         let number = if period == self.period { number + 1 } else { 1 };
         self.last_request = RequestNumber { period: self.period, number };
-        let RouteLink { to, held, .. } = &mut self.links[at];
+        let held = &mut self.flows[at];
         // What was granted before is void, beyond what is in use.
         held.lease.limit(held.flow);
         (held.asked, held.is_open) = (self.last_request, true);
-        let HeldFlow { asked: number, flow, wanted, .. } = *held;
-        outputs.send(*to, Message::AskFlow(FlowRequest { number, held: flow, wanted }));
+        let HeldFlow { to, asked: number, flow, wanted, .. } = *held;
+        outputs.send(to, Message::AskFlow(FlowRequest { number, held: flow, wanted }));
     }
 
     /// A sender asks for a flow.
@@ -315,8 +355,8 @@ impl Robot {
 
     /// A receiver answers a request.
     pub(super) fn hear_grant(&mut self, from: NodeId, grant: FlowGrant) {
-        let Some(at) = link_at(&self.links, from) else { return };
-        let held = &mut self.links[at].held;
+        let Ok(at) = place_of(&self.flows, from) else { return };
+        let held = &mut self.flows[at];
         if held.asked == grant.number {
             held.is_open = false;
             held.lease.promise(grant.flow, grant.until);
@@ -330,17 +370,17 @@ impl Robot {
     /// due, gives back what it does not use, and grants what it can forward. Every request gets an answer.
     fn settle_flows(&mut self, outputs: &mut Out) {
         self.has_flow_news = false;
-        if self.links_in_use().any(|link| link.held.is_to_change()) {
+        if self.flows_in_use().any(HeldFlow::is_to_change) {
             self.change_flows();
         }
-        for at in 0..self.links.len() {
-            let held = &mut self.links[at].held;
+        for at in 0..self.flows.len() {
+            let held = &mut self.flows[at];
             if held.allowed() > held.flow + SAME_FLOW {
                 // There is no room for more in this period.
                 held.wanted = held.flow;
             }
             let is_due = std::mem::take(&mut held.is_due) || held.can_be_given_back();
-            if is_due && self.links[at].to < self.site.robots {
+            if is_due && held.to < self.site.robots {
                 self.ask(at, outputs);
             }
         }
@@ -354,21 +394,21 @@ impl Robot {
     fn change_flows(&mut self) {
         let needs = self.needs();
         let promised = needs.last().map_or(self.period, |&(period, _)| period);
-        let mut in_use: Vec<&mut RouteLink> = Vec::with_capacity(self.links.len());
-        in_use.extend(self.links.iter_mut().filter(|link| link.held.is_in_use()));
+        let mut in_use: Vec<&mut HeldFlow> = Vec::with_capacity(self.flows.len());
+        in_use.extend(self.flows.iter_mut().filter(|held| held.is_in_use()));
         for _ in 0..PASSES {
             let mut change = 0.0;
-            let mut room = 1.0 - in_use.iter().map(|link| link.load()).sum::<f64>();
-            for link in &mut in_use {
-                let more = link.held.raise(room.max(0.0) * link.reliability);
-                room -= more / link.reliability;
+            let mut room = 1.0 - in_use.iter().map(|held| held.load()).sum::<f64>();
+            for held in &mut in_use {
+                let more = held.raise(room.max(0.0) * held.reliability);
+                room -= more / held.reliability;
                 change += more;
             }
-            let lasting = |period| in_use.iter().map(|link| link.held.lasting(period)).sum::<f64>();
+            let lasting = |period| in_use.iter().map(|held| held.lasting(period)).sum::<f64>();
             let spares = needs.iter().map(|&(period, needed)| lasting(period) - needed);
             let mut spare = spares.fold(f64::INFINITY, f64::min);
-            for link in &mut in_use {
-                let less = link.held.lower(spare.max(0.0));
+            for held in &mut in_use {
+                let less = held.lower(spare.max(0.0));
                 spare -= less;
                 change += less;
             }
@@ -393,7 +433,7 @@ impl Robot {
         for kept in &mut self.reservations {
             let (before, lease) = (kept.lease.flow(), &mut kept.lease);
             let part =
-                longer.map(|longer| (part_for_longer(lease, kept.from, &self.links), longer));
+                longer.map(|longer| (part_for_longer(lease, kept.from, &self.flows), longer));
             let flow = spare.most(before, kept.wanted);
             let can_grant = flow > before + SAME_FLOW && may_grant && lease.promise(flow, until);
             if can_grant {
@@ -426,7 +466,7 @@ impl Robot {
         }
         let part = |kept: &Reservation, period| match kept.lease {
             lease if period <= lease.until() => lease.flow(),
-            lease => part_for_longer(&lease, kept.from, &self.links),
+            lease => part_for_longer(&lease, kept.from, &self.flows),
         };
         let is_carried = |period: u32| {
             let parts = self.reservations.iter().map(|kept| part(kept, period)).sum::<f64>();
@@ -446,8 +486,8 @@ impl Robot {
         LEASE.saturating_add(self.longest_wait() as u32)
     }
 
-    fn links_in_use(&self) -> impl Iterator<Item = &RouteLink> {
-        self.links.iter().filter(|link| link.held.is_in_use())
+    fn flows_in_use(&self) -> impl Iterator<Item = &HeldFlow> {
+        self.flows.iter().filter(|held| held.is_in_use())
     }
 
     /// What its own flows have to carry: its rate and what others may send.
@@ -456,12 +496,12 @@ impl Robot {
     }
 
     fn held_outflow(&self) -> f64 {
-        self.links_in_use().map(|link| link.held.flow).sum()
+        self.flows_in_use().map(|held| held.flow).sum()
     }
 
     /// What is left of the flows in a control period ahead if no grant is renewed.
     fn lasting_outflow(&self, period: u32) -> f64 {
-        self.links_in_use().map(|link| link.held.lasting(period)).sum()
+        self.flows_in_use().map(|held| held.lasting(period)).sum()
     }
 
     /// The last control period up to which flows last that carry this much.
@@ -472,8 +512,8 @@ impl Robot {
 
     /// The control periods after which less flows if no grant is renewed.
     fn ends_of_flows(&self) -> impl Iterator<Item = u32> {
-        let flows = self.links_in_use().filter(|link| link.held.flow > 0.0);
-        flows.flat_map(|link| ends(&link.held.lease))
+        let flowing = self.flows_in_use().filter(|held| held.flow > 0.0);
+        flowing.flat_map(|held| ends(&held.lease))
     }
 
     /// The control periods after which less is promised if no grant is renewed.
@@ -500,8 +540,9 @@ impl Robot {
     /// The flows of this period are those in use, and c_i of eq. (5) is what they leave of what others
     /// may send, whether or not they do.
     pub(super) fn adopt_flows(&mut self) {
+        let mut flows = self.flows.iter().peekable();
         for link in &mut self.links {
-            link.share = link.load();
+            link.share = flows.next_if(|held| held.to == link.to).map_or(0.0, HeldFlow::load);
         }
         let granted = self.reservations.iter().map(|kept| (kept.from, kept.lease.flow()));
         self.inflows.clear();

@@ -19,7 +19,6 @@ use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::super::scenario::RoutingMethod;
 use super::Robot;
-use super::reservation::HeldFlow;
 use crate::node::Outputs;
 
 /// Links with less reliability than this carry nothing unless they belong to the tree: a step of
@@ -73,19 +72,12 @@ pub struct RouteLink {
     told: f64,
     /// Whether it is too unreliable to be planned with, and stays only until its flow has ended.
     pub(super) is_retiring: bool,
-    /// The flow in use.
-    pub(super) held: HeldFlow,
 }
 
 impl RouteLink {
     /// F_ij = T_ij R_ij.
     pub fn flow(&self) -> f64 {
         self.share * self.reliability
-    }
-
-    /// T_ij of the flow in use.
-    pub(super) fn load(&self) -> f64 {
-        self.held.flow / self.reliability
     }
 }
 
@@ -108,10 +100,9 @@ impl Robot {
             let reliability = neighbour.reliability;
             let in_tree = tree.iter().any(|link| link.to == to);
             let known = link_at(&old, to).map(|at| &old[at]);
-            let held = known.map_or(HeldFlow::default(), |link| link.held);
             let at_worst = self.site.link.reliability(neighbour.distance + self.stray());
             let is_retiring = at_worst < LEAST_USEFUL_RELIABILITY && !in_tree;
-            if is_retiring && held.flow == 0.0 || reliability <= 0.0 {
+            if is_retiring && !self.sends_to(to) || reliability <= 0.0 {
                 continue;
             }
             let iterate = known.filter(|_| !is_retiring).map_or(0.0, |link| link.iterate);
@@ -124,9 +115,9 @@ impl Robot {
                 iterate,
                 told: 0.0,
                 is_retiring,
-                held,
             });
         }
+        self.drop_flows_without_link();
         self.expected_link = 0;
         self.dual_step_size = self.safe_dual_step();
         self.upstream = self.tree_parent();
@@ -181,11 +172,6 @@ impl Robot {
         {
             self.demands.insert(at, (from, None));
         }
-    }
-
-    /// The link over which the robot may send to `node`.
-    pub(super) fn link(&self, node: NodeId) -> Option<&RouteLink> {
-        link_at(&self.links, node).map(|at| &self.links[at])
     }
 
     /// The link over which the robot may send to `node`. Multipliers of an iteration mostly come in

@@ -79,7 +79,7 @@ impl Link {
     }
 
     fn view(&self) -> View {
-        let held = &self.sender.links[0].held;
+        let held = self.sender.flow_to(OTHER).copied().unwrap_or_default();
         let kept = self.receiver.reservations.iter().find(|kept| kept.from == OTHER);
         let robot = &self.receiver;
         let needs = robot.needs().into_iter();
@@ -125,9 +125,11 @@ impl Link {
                 receiver.ask_for_flows(&mut granted);
             }
             Step::SendBack(periods) => {
-                let RouteLink { share, reliability, held, .. } = &mut receiver.links[0];
+                let RouteLink { share, reliability, .. } = &mut receiver.links[0];
                 *share = BACK / *reliability;
-                (held.flow, held.lease) = (BACK, Lease::of(BACK, receiver.period + periods));
+                let lease = Lease::of(BACK, receiver.period + periods);
+                let held = receiver.held_flow(OTHER);
+                (held.flow, held.lease) = (BACK, lease);
             }
             Step::SenderSettles => sender.take_in_requests(&mut asked),
             Step::ReceiverSettles => receiver.take_in_requests(&mut granted),
@@ -137,7 +139,7 @@ impl Link {
                 for (robot, outputs) in [(sender, &mut asked), (receiver, &mut granted)] {
                     robot.period += periods;
                     // Access points are heard all the time.
-                    robot.links.iter_mut().for_each(|link| link.held.is_due = false);
+                    robot.flows.iter_mut().for_each(|held| held.is_due = false);
                     robot.neighbours.iter_mut().for_each(|it| it.heard_in = robot.period);
                     robot.ask_for_flows(outputs);
                 }
@@ -153,8 +155,8 @@ impl Link {
     /// What tells it from others.
     fn key(&self) -> String {
         let flows = |robot: &Robot| {
-            let links = robot.links.iter().map(|link| (link.held, link.share));
-            format!("{:?}", links.collect::<Vec<_>>())
+            let shares = robot.links.iter().map(|link| link.share);
+            format!("{:?} {:?}", robot.flows, shares.collect::<Vec<_>>())
         };
         let (sender, receiver) = (&self.sender, &self.receiver);
         let state = (sender.period, sender.last_request, sender.has_flow_news);

@@ -304,7 +304,7 @@ fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
         robot.hears(Beacon { parked, ..beacon(5, west(1.2), fixed(13, 14), &[13, 14]) });
         robot.survey_links();
         robot.links[0].share = share;
-        robot.links[0].held.flow = share * robot.links[0].reliability;
+        robot.held_flow(5).flow = share * robot.links[0].reliability;
         robot.begin_negotiation();
         robot.hear_proposal(5, Segment { from: west(1.2), to: west(move_to) }, None);
         let mut outputs = crate::node::Outputs::of(0);

@@ -62,7 +62,7 @@ fn links_are_those_that_are_reliable_enough_or_of_the_tree() {
     let far = |robot: &Robot| robot.site.link.distance_at(0.3);
     let links = |away: f64, attached: bool, flow: f64| {
         let mut robot = router();
-        robot.links[0].held.flow = flow;
+        robot.held_flow(5).flow = flow;
         let held = if attached { fixed(13, 20) } else { fixed(13, 14) };
         let parent = attached.then_some(0);
         robot.hears(Beacon { parent, ..beacon(5, west(away), held, &[13, 14]) });
@@ -92,7 +92,7 @@ fn a_flow_is_raised_to_what_is_planned_and_granted() {
         robot
             .hear_grant(5, FlowGrant { number: request.number, flow: granted, until: NOW + LEASE });
         robot.take_in_requests(&mut outputs);
-        (robot.links[0].held.flow, robot.links[1].load())
+        (robot.held_flow(5).flow, robot.held_flow(ROBOTS).load())
     };
     let close = |(one, two): (f64, f64), (first, second): (f64, f64)| {
         assert!((one - first).abs() < 1e-9 && (two - second).abs() < 1e-9, "{one} and {two}");
@@ -125,7 +125,7 @@ fn no_flow_is_raised_while_a_receiver_may_have_moved() {
         planned(&mut robot, 0.4);
         robot.ask_for_flows(&mut outputs);
         let wanted = requests(&mut outputs)[0].1.wanted;
-        [wanted / robot.links[0].reliability, robot.links[1].load()]
+        [wanted / robot.links[0].reliability, robot.held_flow(ROBOTS).load()]
             .map(|load| (load * 1e9).round())
     };
     let [kept, raised] = [0.2, 0.4].map(|load: f64| [(load * 1e9).round(); 2]);
@@ -220,7 +220,7 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
     let until = |end: u32, kept: Option<(f64, u32)>| {
         let (mut robot, _) = granted(0.3);
         let mut outputs = Outputs::of(0);
-        robot.links[1].held.lease = Lease::of(f64::INFINITY, end);
+        robot.held_flow(ROBOTS).lease = Lease::of(f64::INFINITY, end);
         match kept {
             Some((flow, until)) => robot.reservations[0].lease = Lease::of(flow, until),
             None => robot.reservations.clear(),
@@ -250,7 +250,8 @@ fn what_is_sent_back_carries_no_part_that_is_granted_for_longer() {
         let mut outputs = Outputs::of(0);
         let back = &mut robot.links[0];
         back.share = 0.1 / back.reliability;
-        (back.held.flow, back.held.lease) = (0.1, Lease::of(0.1, NOW + 3));
+        let held = robot.held_flow(5);
+        (held.flow, held.lease) = (0.1, Lease::of(0.1, NOW + 3));
         robot.reservations[0].lease = Lease::of(0.15, NOW + 3);
         let number = RequestNumber { period: NOW, number: 2 };
         robot.hear_request(5, FlowRequest { number, held: 0.15, wanted: 0.15 });
@@ -286,7 +287,7 @@ fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
     for (later, flow) in [(2, wanted), (3, part), (4, part), (5, 0.0)] {
         sender.period = NOW + later;
         sender.ask_for_flows(&mut outputs);
-        assert_eq!(sender.links[0].held.flow, flow, "{later} periods later");
+        assert_eq!(sender.held_flow(5).flow, flow, "{later} periods later");
     }
 }
 
@@ -345,11 +346,11 @@ fn a_flow_is_lowered_where_the_rest_carries_what_is_needed() {
     let reliability = robot.links[1].reliability;
     robot.links[1].share = 0.4 / reliability;
     robot.ask_for_flows(&mut outputs);
-    assert!((robot.links[1].held.flow - 0.4).abs() < 1e-9);
+    assert!((robot.held_flow(ROBOTS).flow - 0.4).abs() < 1e-9);
     for (planned, held) in [(0.25, 0.25), (0.05, 0.1)] {
         robot.links[1].share = planned / reliability;
         robot.ask_for_flows(&mut outputs);
-        assert!((robot.links[1].held.flow - held).abs() < 1e-9, "its rate of 0.1 is carried");
+        assert!((robot.held_flow(ROBOTS).flow - held).abs() < 1e-9, "its rate of 0.1 is carried");
     }
 }
 
@@ -441,12 +442,12 @@ fn flows_take_no_more_than_all_the_time_of_a_sender() {
     let number = requests(&mut outputs)[0].1.number;
     robot.hear_grant(5, FlowGrant { number, flow: 0.7 * one, until: NOW + LEASE });
     robot.take_in_requests(&mut outputs);
-    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    let flows = [robot.held_flow(5).flow, robot.held_flow(ROBOTS).flow];
     assert!((flows[0] / one + flows[1] / two - 1.0).abs() < 1e-9, "{flows:?}");
     // What the first gives up the other one takes.
     (robot.links[0].share, robot.links[1].share) = (0.1, 0.7);
     robot.ask_for_flows(&mut outputs);
-    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    let flows = [robot.held_flow(5).flow, robot.held_flow(ROBOTS).flow];
     assert!(
         (flows[0] - 0.1 * one).abs() < 1e-9 && (flows[1] - 0.7 * two).abs() < 1e-9,
         "{flows:?}"
@@ -465,7 +466,7 @@ fn flows_that_are_raised_together_share_the_time_that_is_left() {
     robot.hear_grant(5, FlowGrant { number, flow: 0.6 * one, until: NOW + LEASE });
     robot.links[1].share = 0.8;
     robot.ask_for_flows(&mut outputs);
-    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    let flows = [robot.held_flow(5).flow, robot.held_flow(ROBOTS).flow];
     assert!(
         (flows[0] - 0.6 * one).abs() < 1e-9 && (flows[1] - 0.4 * two).abs() < 1e-9,
         "{flows:?}"
@@ -490,7 +491,7 @@ fn a_flow_takes_the_place_of_another_without_time_or_flow_to_spare() {
         robot.reservations[0].lease = Lease::of(0.0, NOW + LEASE);
         robot.hear_grant(5, FlowGrant { number, flow: robot.rate, until: NOW + lasts });
         robot.take_in_requests(&mut outputs);
-        robot.links.iter().map(|link| link.held.flow / robot.rate).collect::<Vec<_>>()
+        [5, ROBOTS].map(|to| robot.held_flow(to).flow / robot.rate).to_vec()
     };
     let rate = router().rate;
     let close = |flows: Vec<f64>, wanted: [f64; 2]| {

@@ -372,7 +372,7 @@ fn a_sender_objects_to_a_move_of_its_receiver_that_overloads_it() {
         robot.hears(beacon(5, west(1.2), fixed(13, 14), &[13, 14]));
         robot.survey_links();
         robot.links[0].share = share;
-        robot.links[0].held.flow = share * robot.links[0].reliability;
+        robot.held_flow(5).flow = share * robot.links[0].reliability;
         robot.begin_negotiation();
         robot.hear_proposal(5, Segment { from: west(1.2), to: west(1.2 + ahead) }, None);
         let mut outputs = Outputs::of(0);
@@ -425,7 +425,7 @@ fn a_sender_relies_on_its_receiver_and_answers_it() {
     assert_eq!((request.held, request.number), (0.0, RequestNumber { period: NOW, number: 1 }));
     robot.hear_grant(5, FlowGrant { number: request.number, flow: 0.15, until: NOW + 8 });
     robot.take_in_requests(&mut outputs);
-    assert!((robot.links[0].held.flow - 0.15).abs() < 1e-12, "no more than is granted");
+    assert!((robot.held_flow(5).flow - 0.15).abs() < 1e-12, "no more than is granted");
     robot.begin_negotiation();
     robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) }, None);
     let mut outputs = Outputs::of(0);
