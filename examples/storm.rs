@@ -25,7 +25,7 @@ use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::story;
 use pleach::verify::network::storm::{
-    Kind, Storm, Verdict, allowing_for, draw, ride, ride_watched, shrink,
+    Kind, Storm, Verdict, allowing_for, draw, judged_run, judged_run_watched, shrink,
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -134,7 +134,7 @@ fn table(seeds: u64, only: Option<&str>, strategy: Option<Strategy>) -> Result<(
     let mut missions = Vec::new();
     for name in SHIPPED {
         let scenario = strategies::following(strategy, shipped(name));
-        let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?.periods;
+        let calm = judged_run(&scenario, &Storm::default(), MOST_PERIODS)?.periods;
         say!("{name}: {calm} periods without faults");
         missions.push((scenario, calm));
     }
@@ -152,7 +152,7 @@ fn table(seeds: u64, only: Option<&str>, strategy: Option<Strategy>) -> Result<(
             };
             for seed in 0..seeds {
                 let storm = draw(kind, seed, &scenario, seconds(*calm, &scenario));
-                let verdict = ride(&scenario, &storm, MOST_PERIODS.min(3 * calm));
+                let verdict = judged_run(&scenario, &storm, MOST_PERIODS.min(3 * calm));
                 if let (Some(_), Ok(verdict)) = (only, &verdict) {
                     report(&scenario, seed, verdict);
                 }
@@ -240,7 +240,7 @@ fn report(scenario: &ValidScenario, seed: u64, verdict: &Verdict) {
 
 /// Tells one mission.
 fn one(scenario: ValidScenario, kind: Kind, seed: u64) -> Result<(), Box<dyn Error>> {
-    let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
+    let calm = judged_run(&scenario, &Storm::default(), MOST_PERIODS)?;
     let scenario = allowing_for(kind, &scenario)?;
     let storm = draw(kind, seed, &scenario, seconds(calm.periods, &scenario));
     tell_in_full(&scenario, seed, &storm, MOST_PERIODS.min(3 * calm.periods))
@@ -254,14 +254,14 @@ fn tell_in_full(
     periods: usize,
 ) -> Result<(), Box<dyn Error>> {
     say!("{} in {storm:#?}", scenario.name);
-    let verdict = ride(scenario, storm, periods)?;
+    let verdict = judged_run(scenario, storm, periods)?;
     for (step, event) in &verdict.events {
         say!("k = {step:<6} {}", story::tell(event));
     }
     report(scenario, seed, &verdict);
     if let Some(violation) = verdict.violations.first() {
         let concerned = |node: usize| violation.robots.contains(&node);
-        ride_watched(scenario, storm, violation.step + 2, |snapshot| {
+        judged_run_watched(scenario, storm, violation.step + 2, |snapshot| {
             if snapshot.step + 6 < violation.step {
                 return;
             }
@@ -300,7 +300,7 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
     let (done, failed) = (AtomicU64::new(0), AtomicU64::new(0));
     let run = |seed: u64| -> Result<(u64, Verdict), String> {
         let (scenario, storm) = mission(seed, strategy);
-        let verdict = ride(&scenario, &storm, MOST_PERIODS);
+        let verdict = judged_run(&scenario, &storm, MOST_PERIODS);
         let breaks = verdict.as_ref().is_ok_and(|verdict| !verdict.violations.is_empty());
         let failed = failed.fetch_add(u64::from(breaks), Ordering::Relaxed) + u64::from(breaks);
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -350,12 +350,12 @@ fn tell(scenario: &ValidScenario, storm: &Storm, verdict: &Verdict) -> Result<()
     let property = violation.property;
     let periods = violation.step + 2;
     let fails = |storm: &Storm| {
-        ride(scenario, storm, periods).is_ok_and(|verdict| {
+        judged_run(scenario, storm, periods).is_ok_and(|verdict| {
             verdict.violations.iter().any(|violation| violation.property == property)
         })
     };
     let smallest = shrink(storm, fails);
-    let verdict = ride(scenario, &smallest, periods)?;
+    let verdict = judged_run(scenario, &smallest, periods)?;
     say!("{} in {smallest:#?}", scenario.name);
     for (step, event) in &verdict.events {
         say!("k = {step:<6} {}", story::tell(event));

@@ -216,7 +216,7 @@ pub fn run_in_storm(
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     if !scenario.fleets().is_empty() {
-        if !storm.troubles.is_empty() || !storm.weather.partitions.is_empty() {
+        if !storm.nodes.is_empty() || !storm.messages.partitions.is_empty() {
             return Err(MissionError::FaultsOfFleets);
         }
         let mut fleets = Fleets::of_networks(scenario, |fleet| storm::network(fleet, storm))?;

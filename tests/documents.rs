@@ -15,8 +15,8 @@ use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::robot::GLOSSARY;
 use pleach::automaton::network::scenario::{Control, Scenario, ValidScenario};
 use pleach::automaton::network::user::USER_GLOSSARY;
-use pleach::automaton::network::{Crash, Trouble};
-use pleach::automaton::node::Weather;
+use pleach::automaton::network::{Crash, NodeFaults};
+use pleach::automaton::node::MessageFaults;
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
@@ -255,8 +255,8 @@ fn a_robot_that_is_lost_is_replaced_as_the_page_says() {
     let crash = Crash { time: 200.0, inputs: 0, back: None };
     let storm = Storm {
         seed: 1,
-        weather: Weather { loss: 0.3, ..Weather::default() },
-        troubles: vec![(12, Trouble { crash: Some(crash), ..Trouble::default() })],
+        messages: MessageFaults { loss: 0.3, ..MessageFaults::default() },
+        nodes: vec![(12, NodeFaults { crash: Some(crash), ..NodeFaults::default() })],
     };
     let mut album = Album::with_faults(&scenario, storm.faults());
     let (mut story, mut summary) = (Story::default(), Summary::new(&scenario));

@@ -4,8 +4,8 @@
 use crate::missions::{Mission, Period, run, run_by, shipped, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
-use pleach::automaton::network::{Crash, Trouble};
-use pleach::automaton::node::Weather;
+use pleach::automaton::network::{Crash, NodeFaults};
+use pleach::automaton::node::MessageFaults;
 use pleach::discrete::network::Role;
 use pleach::discrete::network::activity::may_follow;
 use pleach::mission::{Watcher, run_in_storm};
@@ -102,8 +102,8 @@ fn a_user_is_told_what_became_of_each_task() {
 fn so_it_goes_where_messages_are_lost() {
     let scenario = valid(shipped("errands"));
     for (loss, seed) in [(0.3, 1), (0.3, 2), (0.5, 1), (0.5, 2)] {
-        let weather = Weather { loss, ..Weather::default() };
-        let storm = Storm { seed, weather, troubles: Vec::new() };
+        let messages = MessageFaults { loss, ..MessageFaults::default() };
+        let storm = Storm { seed, messages, nodes: Vec::new() };
         let mut summary = Summary::new(&scenario);
         let completed = run_in_storm(&scenario, &storm, &mut [&mut summary]).unwrap();
         assert_eq!(completed.end.outcome, Outcome::Serviced, "{loss}: {:?}", completed.end);
@@ -118,11 +118,11 @@ fn a_task_that_is_serviced_is_pursued_no_longer() {
     let scenario = valid(shipped("errands"));
     let stops = |time: f64, back: Option<f64>| {
         let crash = Crash { time, inputs: 0, back };
-        Trouble { crash: Some(crash), ..Trouble::default() }
+        NodeFaults { crash: Some(crash), ..NodeFaults::default() }
     };
-    let weather = Weather { loss: 0.3, ..Weather::default() };
-    let troubles = vec![(5, stops(150.0, Some(170.0))), (7, stops(300.0, None))];
-    let storm = Storm { seed: 0, weather, troubles };
+    let messages = MessageFaults { loss: 0.3, ..MessageFaults::default() };
+    let nodes = vec![(5, stops(150.0, Some(170.0))), (7, stops(300.0, None))];
+    let storm = Storm { seed: 0, messages, nodes };
     let end = run_in_storm(&scenario, &storm, &mut []).unwrap().end;
     assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
 }

@@ -4,8 +4,8 @@
 use crate::missions::shipped;
 use pleach::automaton::network::record::{Faults, Outcome};
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::automaton::network::{Crash, Trouble};
-use pleach::automaton::node::Weather;
+use pleach::automaton::network::{Crash, NodeFaults};
+use pleach::automaton::node::MessageFaults;
 use pleach::judge::{Verdict, judge};
 use pleach::mission;
 use pleach::trace::{TraceReader, TraceWriter};
@@ -16,8 +16,8 @@ use std::sync::OnceLock;
 
 /// Three messages of ten are lost.
 fn lossy() -> Storm {
-    let weather = Weather { loss: 0.3, ..Weather::default() };
-    Storm { seed: 1, weather, troubles: Vec::new() }
+    let messages = MessageFaults { loss: 0.3, ..MessageFaults::default() };
+    Storm { seed: 1, messages, nodes: Vec::new() }
 }
 
 /// The trace of a mission in a storm, line by line.
@@ -62,7 +62,7 @@ fn nothing_is_violated_in_storms_of_all_kinds() {
     let kinds = Kind::ALL.iter().filter(|kind| kind.errors(&scenario).are_none());
     for &kind in kinds.filter(|&&kind| kind != Kind::Clocks) {
         let mut storm = draw(kind, 3, &scenario, 100.0);
-        storm.troubles.iter_mut().for_each(|(_, trouble)| trouble.shift = 0.0);
+        storm.nodes.iter_mut().for_each(|(_, faults)| faults.shift = 0.0);
         assert!(!storm.faults().are_none(), "{}", kind.name());
         if let Verdict::Violated(violation) = verdict(&trace_of("redundant-node", &storm)) {
             panic!("{}: {violation}", kind.name());
@@ -73,8 +73,8 @@ fn nothing_is_violated_in_storms_of_all_kinds() {
 #[test]
 fn a_robot_that_stops_is_a_body_and_nothing_else() {
     let crash = Crash { time: 30.0, inputs: 0, back: Some(60.0) };
-    let trouble = Trouble { crash: Some(crash), ..Trouble::default() };
-    let storm = Storm { troubles: vec![(3, trouble)], ..lossy() };
+    let faults = NodeFaults { crash: Some(crash), ..NodeFaults::default() };
+    let storm = Storm { nodes: vec![(3, faults)], ..lossy() };
     let lines = trace_of("redundant-node", &storm);
     assert_eq!(lines[0]["faults"], json!({ "messages": true, "nodes": true }));
     for line in lines.iter().filter(|line| line["type"] == "step") {
@@ -274,8 +274,8 @@ fn no_node_is_absent_where_nothing_fails() {
 fn serviced_again() -> Vec<Value> {
     static TRACE: OnceLock<Vec<Value>> = OnceLock::new();
     let crash = Crash { time: 120.0, inputs: 0, back: None };
-    let trouble = Trouble { crash: Some(crash), ..Trouble::default() };
-    let storm = Storm { seed: 1, weather: Weather::default(), troubles: vec![(5, trouble)] };
+    let faults = NodeFaults { crash: Some(crash), ..NodeFaults::default() };
+    let storm = Storm { seed: 1, messages: MessageFaults::default(), nodes: vec![(5, faults)] };
     TRACE.get_or_init(|| trace_of("errands", &storm)).clone()
 }
 

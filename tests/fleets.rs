@@ -3,10 +3,10 @@
 
 use crate::floor_plans::{Family, scenario};
 use crate::missions::{Period, run, shipped, shipped_mission, traced, valid};
-use pleach::automaton::network::Trouble;
+use pleach::automaton::network::NodeFaults;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Teams, ValidScenario};
-use pleach::automaton::node::Weather;
+use pleach::automaton::node::MessageFaults;
 use pleach::judge::{Verdict, judge};
 use pleach::mission::{self, MissionError, Watcher};
 use pleach::trace::{TraceReader, TraceWriter};
@@ -128,8 +128,8 @@ fn a_team_that_a_body_blocks_does_not_blame_its_links_where_messages_are_lost() 
     let path = "tests/scenarios/given-up/body-in-corridor.toml";
     let scenario = pleach::scenario_file::read(path.as_ref()).unwrap();
     for (loss, seed) in [(0.05, 1), (0.1, 2), (0.2, 3), (0.3, 4)] {
-        let weather = Weather { loss, ..Weather::default() };
-        let lossy = Storm { seed, weather, troubles: Vec::new() };
+        let messages = MessageFaults { loss, ..MessageFaults::default() };
+        let lossy = Storm { seed, messages, nodes: Vec::new() };
         let end = mission::run_in_storm(&scenario, &lossy, &mut []).unwrap().end;
         assert_eq!(end.outcome, Outcome::Blocked, "{loss} {seed}: {}", end.reason);
         let told = "something stands in its way, and a recruit would not help";
@@ -204,14 +204,14 @@ fn random_missions_of_fleets_keep_their_promises_and_give_the_same_bytes() {
 #[test]
 fn fleets_may_lose_messages_and_lose_no_robots() {
     let scenario = valid(shipped("two-teams"));
-    let weather = Weather { loss: 0.2, ..Weather::default() };
-    let lossy = Storm { seed: 3, weather, troubles: Vec::new() };
+    let messages = MessageFaults { loss: 0.2, ..MessageFaults::default() };
+    let lossy = Storm { seed: 3, messages, nodes: Vec::new() };
     let mut writer = TraceWriter::with_faults(Vec::new(), &scenario, lossy.faults()).unwrap();
     let completed = mission::run_in_storm(&scenario, &lossy, &mut [&mut writer]).unwrap();
     assert_eq!(completed.end.outcome, Outcome::Serviced, "{}", completed.end.reason);
     let bytes = writer.finish().unwrap();
     assert!(matches!(verdict(&bytes), Verdict::Sound { .. }));
-    let troubled = Storm { troubles: vec![(0, Trouble::default())], ..lossy };
+    let troubled = Storm { nodes: vec![(0, NodeFaults::default())], ..lossy };
     let refused = mission::run_in_storm(&scenario, &troubled, &mut []);
     assert!(matches!(refused, Err(MissionError::FaultsOfFleets)));
 }

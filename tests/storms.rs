@@ -7,12 +7,12 @@ use crate::floor_plans::strategies;
 use crate::stressed::stressed_scenarios;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
-use pleach::automaton::network::{Crash, Frail, Message, Network, Trouble};
+use pleach::automaton::network::{Crash, FaultyNode, Message, Network, NodeFaults};
 use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
 use pleach::continuous::Point;
 use pleach::verify::network::storm::{
-    Judge, Kind, Storm, Verdict, allowing_for, draw, network, ride,
+    Judge, Kind, Storm, Verdict, allowing_for, draw, judged_run, network,
 };
 use pleach::verify::network::{Property, Violation};
 use std::ops::ControlFlow;
@@ -33,7 +33,7 @@ fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
     let storm = draw(kind, seed, &scenario, DURATION);
     let is_exact = kind.errors(&scenario).are_none();
     let periods = if is_exact { periods } else { PERIODS_WITH_ERRORS };
-    ride(&scenario, &storm, periods).expect("nodes go on whatever they receive")
+    judged_run(&scenario, &storm, periods).expect("nodes go on whatever they receive")
 }
 
 /// A shipped scenario in the paper's order, for what happens at a certain time of its mission, or in a certain storm.
@@ -45,9 +45,9 @@ fn in_papers_order(name: &str) -> ValidScenario {
 /// promise is broken.
 fn end_although_one_stops(name: &str, node: usize, crash: Crash, periods: usize) -> End {
     let time = crash.time;
-    let troubles = vec![(node, Trouble { crash: Some(crash), ..Trouble::default() })];
-    let storm = Storm { troubles, ..Storm::default() };
-    let verdict = ride(&in_papers_order(name), &storm, periods).expect("nodes go on");
+    let nodes = vec![(node, NodeFaults { crash: Some(crash), ..NodeFaults::default() })];
+    let storm = Storm { nodes, ..Storm::default() };
+    let verdict = judged_run(&in_papers_order(name), &storm, periods).expect("nodes go on");
     assert_eq!(verdict.violations, [], "{name}, node {node} at {time} s");
     verdict.end.unwrap_or_else(|| panic!("{name}, node {node} at {time} s: no end"))
 }
@@ -80,8 +80,13 @@ struct Spoiled {
     spoil: fn(&mut MissionEvent),
 }
 
-impl<M: Medium<Message, Point>> Observer<Network<M, Frail>> for Spoiled {
-    fn flows(&mut self, network: &Network<M, Frail>, _: HybridTime, _: f64) -> ControlFlow<End> {
+impl<M: Medium<Message, Point>> Observer<Network<M, FaultyNode>> for Spoiled {
+    fn flows(
+        &mut self,
+        network: &Network<M, FaultyNode>,
+        _: HybridTime,
+        _: f64,
+    ) -> ControlFlow<End> {
         let mut events = network.events();
         events.iter_mut().for_each(self.spoil);
         self.judge.observe(&network.snapshot(), &events, network.nodes());
@@ -136,7 +141,7 @@ fn no_loss_of_messages_overloads_robots_under_stress() {
         for kind in kinds {
             for seed in 0..3 {
                 let storm = draw(kind, seed, &scenario, DURATION);
-                let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+                let verdict = judged_run(&scenario, &storm, PERIODS).expect("nodes go on");
                 let violations = verdict.violations;
                 assert_eq!(violations, [], "stress {number}, {}, seed {seed}", kind.name());
             }
@@ -152,7 +157,8 @@ fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
     {
         let scenario = in_papers_order(name);
         let storm = draw(kind, seed, &scenario, duration);
-        let verdict = ride(&scenario, &storm, 650).expect("nodes go on whatever they receive");
+        let verdict =
+            judged_run(&scenario, &storm, 650).expect("nodes go on whatever they receive");
         assert_eq!(verdict.violations, [], "{name}, {}", kind.name());
     }
 }
@@ -190,7 +196,7 @@ fn storms_that_broke_a_promise_once_break_none() {
     for (kind, turn, seed, periods) in kept {
         let (scenario, storm) = mission_of_turn(turn, kind, seed);
         let scenario = strategies::following(Some(Strategy::Paper), scenario);
-        let verdict = ride(&scenario, &storm, periods).expect("nodes go on");
+        let verdict = judged_run(&scenario, &storm, periods).expect("nodes go on");
         broken.extend(verdict.violations.first().map(|first| format!("{seed}: {first}")));
     }
     assert!(broken.is_empty(), "{broken:#?}");
@@ -216,7 +222,7 @@ fn storms_in_which_recruits_are_called_ahead_break_no_promise() {
     for (kind, turn, seed) in kept {
         let (scenario, storm) = mission_of_turn(turn, kind, seed);
         let scenario = strategies::following(Some(Strategy::Eager), scenario);
-        let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+        let verdict = judged_run(&scenario, &storm, PERIODS).expect("nodes go on");
         assert_eq!(verdict.violations, [], "{seed}");
     }
 }
@@ -255,7 +261,7 @@ fn robots_that_come_back_are_asked_before_a_task_is_given_up() {
     for seed in [1, 2] {
         let scenario = in_papers_order("office");
         let storm = draw(Kind::Partition, seed, &scenario, 815.0);
-        let verdict = ride(&scenario, &storm, 2_000).expect("nodes go on");
+        let verdict = judged_run(&scenario, &storm, 2_000).expect("nodes go on");
         assert_eq!(verdict.violations, [], "{seed}");
         let end = verdict.end.unwrap_or_else(|| panic!("{seed}: it does not end"));
         assert_eq!(end.outcome, Outcome::Serviced, "{seed}: {}", end.reason);
@@ -296,10 +302,10 @@ fn missions_are_serviced_although_clocks_are_not_aligned() {
 #[test]
 fn an_access_point_waits_for_robots_that_begin_after_it() {
     let scenario = shipped("redundant-node");
-    let late = Trouble { joins: Some(4.0), ..Trouble::default() };
-    let troubles = (0..scenario.robot.len()).map(|robot| (robot, late.clone())).collect();
-    let storm = Storm { troubles, ..Storm::default() };
-    let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+    let late = NodeFaults { joins: Some(4.0), ..NodeFaults::default() };
+    let nodes = (0..scenario.robot.len()).map(|robot| (robot, late.clone())).collect();
+    let storm = Storm { nodes, ..Storm::default() };
+    let verdict = judged_run(&scenario, &storm, PERIODS).expect("nodes go on");
     assert_eq!(verdict.violations, []);
     let end = verdict.end.expect("it ends in time");
     assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
@@ -348,7 +354,7 @@ fn missions_are_serviced_although_a_robot_restarts() {
     let scenario = in_papers_order("corridor");
     for seed in [1, 2, 7] {
         let storm = draw(Kind::Restart, seed, &scenario, 497.0);
-        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
+        let verdict = judged_run(&scenario, &storm, 1_500).expect("nodes go on");
         assert_eq!(verdict.violations, [], "{seed}");
         let end = verdict.end.unwrap_or_else(|| panic!("{seed}: it does not end"));
         assert_eq!(end.outcome, Outcome::Serviced, "{seed}: {}", end.reason);
@@ -364,13 +370,13 @@ fn the_mission_goes_on_when_the_first_access_point_restarts() {
     {
         let scenario = shipped(name);
         let first = scenario.robot.len();
-        let crash = |time, back| Trouble {
+        let crash = |time, back| NodeFaults {
             crash: Some(Crash { time, inputs: 0, back }),
-            ..Trouble::default()
+            ..NodeFaults::default()
         };
-        let troubles = vec![(gone, crash(30.0, None)), (first, crash(time, Some(back)))];
-        let storm = Storm { troubles, ..Storm::default() };
-        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
+        let nodes = vec![(gone, crash(30.0, None)), (first, crash(time, Some(back)))];
+        let storm = Storm { nodes, ..Storm::default() };
+        let verdict = judged_run(&scenario, &storm, 1_500).expect("nodes go on");
         assert_eq!(verdict.violations, [], "{name}, back at {back} s");
         let end = verdict.end.unwrap_or_else(|| panic!("{name}, back at {back} s: no end"));
         assert_eq!(end.outcome, Outcome::Serviced, "{name}, back at {back} s: {}", end.reason);

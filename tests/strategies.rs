@@ -7,7 +7,7 @@ use crate::missions::{Mission, run_by, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{Scenario, Strategy, ValidScenario};
 use pleach::discrete::network::{Phase, Role};
-use pleach::verify::network::storm::ride;
+use pleach::verify::network::storm::judged_run;
 use rayon::prelude::*;
 
 /// Missions of each family.
@@ -116,7 +116,7 @@ fn storms_break_no_promise_where_recruits_are_called_for_ahead() {
     (0..STORMS).into_par_iter().for_each(|seed| {
         let (scenario, storm) = mission_in_storm(seed);
         let scenario: ValidScenario = strategies::following(Some(Strategy::Eager), scenario);
-        let verdict = ride(&scenario, &storm, PERIODS_IN_STORMS).expect("nodes go on");
+        let verdict = judged_run(&scenario, &storm, PERIODS_IN_STORMS).expect("nodes go on");
         assert!(verdict.violations.is_empty(), "storm {seed}: {:?}", verdict.violations);
     });
 }

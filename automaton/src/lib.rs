@@ -17,7 +17,6 @@
 //! behind the feature `network`, which is on by default; without it the framework needs neither
 //! geometry nor a solver.
 
-mod abreast;
 pub mod automaton;
 pub mod builder;
 mod chance;
@@ -39,6 +38,7 @@ pub mod network;
 pub mod node;
 pub mod observed;
 mod outline;
+mod parallel;
 pub mod reset;
 pub mod sliding;
 mod sweep;

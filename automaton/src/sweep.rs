@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::abreast::{abreast, threads};
+use crate::parallel::{for_each, threads};
 
 /// What `run` makes of each case, in the order of the cases, whatever the number of threads.
 ///
@@ -47,7 +47,7 @@ pub fn sweep<T: Sync, R: Send>(
     run: impl Fn(&T) -> R + Sync,
 ) -> Vec<R> {
     let done = Mutex::new((Vec::with_capacity(cases.len()), &mut progress));
-    abreast(threads().min(cases.len()), cases.iter().enumerate(), |(number, case)| {
+    for_each(threads().min(cases.len()), cases.iter().enumerate(), |(number, case)| {
         let result = run(case);
         // A panic in `run` ends the sweep; what others have added is whole.
         let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);

@@ -42,13 +42,6 @@ pub enum Engine {
     Test,
 }
 
-impl Engine {
-    /// Whether it goes through so many states that it pays to optimise it first.
-    pub const fn takes_long(self) -> bool {
-        matches!(self, Engine::Exploration | Engine::StateMachine)
-    }
-}
-
 impl fmt::Display for Engine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -38,7 +38,7 @@ use writer::Writer;
 pub struct Tape {
     /// How many of the first places hold variables.
     variables: usize,
-    /// What the places after the variables hold. What is read abreast has as
+    /// What the places after the variables hold. What is read in lanes has as
     /// many places as it takes.
     constants: Vec<f64>,
     /// How many places hold what is computed.
@@ -89,7 +89,7 @@ enum Action {
     Choice(Relation),
 }
 
-/// What is done to some places, once or abreast.
+/// What is done to some places, once or in lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Instruction {
     action: Action,
@@ -102,7 +102,7 @@ struct Instruction {
     operands: [u32; 4],
 }
 
-/// How many results an instruction abreast computes, widest first. Widths are known to the compiler,
+/// How many results an instruction computes in lanes, widest first. Widths are known to the compiler,
 /// which keeps the operands of each in registers.
 const WIDTHS: [usize; 3] = [8, 4, 2];
 
@@ -119,7 +119,7 @@ impl Action {
         }
     }
 
-    /// Whether it is done abreast where it can be: arithmetic is.
+    /// Whether it is done in lanes where it can be: arithmetic is.
     fn is_arithmetic(self) -> bool {
         matches!(
             self,
@@ -178,9 +178,9 @@ impl Tape {
         for run in &self.runs {
             let (instructions, rest) = ahead.split_at(*run as usize);
             match instructions[0].width {
-                8 => self.abreast::<8>(instructions, places),
-                4 => self.abreast::<4>(instructions, places),
-                2 => self.abreast::<2>(instructions, places),
+                8 => self.in_lanes::<8>(instructions, places),
+                4 => self.in_lanes::<4>(instructions, places),
+                2 => self.in_lanes::<2>(instructions, places),
                 _ => self.once(instructions, places),
             }
             ahead = rest;
@@ -227,9 +227,9 @@ impl Tape {
         }
     }
 
-    /// Computes results abreast; the writer makes such instructions of arithmetic only.
+    /// Computes results in lanes; the writer makes such instructions of arithmetic only.
     #[inline]
-    fn abreast<const WIDTH: usize>(&self, instructions: &[Instruction], places: &mut [f64]) {
+    fn in_lanes<const WIDTH: usize>(&self, instructions: &[Instruction], places: &mut [f64]) {
         let (mut latest, mut results) = (u32::MAX, [0.0; WIDTH]);
         for Instruction { action, target, operands, .. } in instructions {
             let at = |number: usize| -> [f64; WIDTH] {

@@ -39,7 +39,7 @@ proptest! {
         }
     }
 
-    /// Equal parts under other names, whose instructions lie abreast.
+    /// Equal parts under other names, whose instructions lie side by side.
     #[test]
     fn tapes_of_equal_parts_compute_bit_for_bit(
         expression in expressions(),

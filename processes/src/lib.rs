@@ -4,15 +4,15 @@
 //! [`Node::step`](pleach::automaton::node::Node::step), as in a simulation. The chapters follow a
 //! packet on its way: [`packet`] says how it is written and what is refused, [`transport`] carries
 //! it, [`lockstep`] says when all packets of a round have come, [`receiver`] which of its messages
-//! reach a node, and [`crew`] hands them to the nodes of a process. [`process`] is the loop around
+//! reach a node, and [`local_nodes`] hands them to the nodes of a process. [`process`] is the loop around
 //! them. What observers read are [`report`]s; [`watch`] makes snapshots of them, and [`launch`] starts
 //! all processes of a scenario on this machine.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
 
 pub mod arguments;
-pub mod crew;
 pub mod launch;
+pub mod local_nodes;
 pub mod lockstep;
 pub mod memory;
 pub mod packet;

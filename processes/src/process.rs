@@ -2,7 +2,7 @@
 //! and ends with the mission.
 
 use crate::arguments::{AccessPointArguments, MEETING_POINT, NodeArguments, RobotArguments};
-use crate::crew::Crew;
+use crate::local_nodes::LocalNodes;
 use crate::lockstep::{Lockstep, after};
 use crate::memory::Memory;
 use crate::packet::{LONGEST_PACKET, Packet, Refusals, Stamp};
@@ -61,10 +61,10 @@ pub fn run_robot(arguments: &RobotArguments) -> Result<Status, Failure> {
     let memory = arguments.state.as_deref();
     let memory = memory.map(|path| Memory::open(path, &digest, id, start)).transpose()?;
     let place = memory.as_ref().map_or(start, Memory::position);
-    let crew = Crew::robot(&scenario, id, place.into());
+    let nodes = LocalNodes::robot(&scenario, id, place.into());
     let defaults = Endpoints { listen: "tcp/127.0.0.1:0", connect: Some(MEETING_POINT) };
     let transport = Transport::open(&arguments.network, defaults, &digest, Interest::Packets)?;
-    let parts = Parts { crew, memory, transport, digest, wait: arguments.network.wait.0 };
+    let parts = Parts { nodes, memory, transport, digest, wait: arguments.network.wait.0 };
     Process::new(&scenario, parts, &arguments.node)?.run()
 }
 
@@ -83,13 +83,13 @@ pub fn run_access_point(arguments: &AccessPointArguments) -> Result<Status, Fail
         }
     };
     let digest = digest_of(&scenario)?;
-    let crew = Crew::access_points(&scenario, numbers).map_err(internal)?;
+    let nodes = LocalNodes::access_points(&scenario, numbers).map_err(internal)?;
     let defaults = match arguments.id {
         None | Some(0) => Endpoints { listen: MEETING_POINT, connect: None },
         _ => Endpoints { listen: "tcp/127.0.0.1:0", connect: Some(MEETING_POINT) },
     };
     let transport = Transport::open(&arguments.network, defaults, &digest, Interest::Packets)?;
-    let parts = Parts { crew, memory: None, transport, digest, wait: arguments.network.wait.0 };
+    let parts = Parts { nodes, memory: None, transport, digest, wait: arguments.network.wait.0 };
     Process::new(&scenario, parts, &arguments.node)?.run()
 }
 
@@ -122,7 +122,7 @@ pub fn name_of(scenario: &ValidScenario, node: NodeId) -> String {
 
 /// What a process is made of.
 struct Parts {
-    crew: Crew,
+    nodes: LocalNodes,
     memory: Option<Memory>,
     transport: Transport,
     digest: String,
@@ -167,7 +167,7 @@ impl<'a> Process<'a> {
         mut parts: Parts,
         options: &'a NodeArguments,
     ) -> Result<Self, Failure> {
-        let ids = parts.crew.ids();
+        let ids = parts.nodes.ids();
         let senders = ids.iter().map(|&id| parts.transport.sender(id));
         let senders = senders.collect::<Result<Vec<_>, _>>()?;
         let site = scenario.site();
@@ -375,15 +375,15 @@ impl<'a> Process<'a> {
 
     fn take_part_in(&mut self, period: u32) -> Result<Period, Failure> {
         self.say_hello();
-        self.parts.crew.begin_period();
+        self.parts.nodes.begin_period();
         self.events.iter_mut().for_each(Vec::clear);
         let mut stamp = Stamp { period, round: 1, answer: 0 };
         let mut heard = Vec::new();
         for _ in 0..MOST_EXCHANGES {
             self.lockstep.go_on_to(stamp);
-            self.parts.crew.hear(&heard).map_err(internal)?;
+            self.parts.nodes.hear(&heard).map_err(internal)?;
             if stamp.answer == 0 {
-                self.parts.crew.tick(stamp.round).map_err(internal)?;
+                self.parts.nodes.tick(stamp.round).map_err(internal)?;
             }
             let mut packets = self.send(stamp)?;
             if !self.wait_for_packets(stamp)? {
@@ -407,17 +407,17 @@ impl<'a> Process<'a> {
     /// Sends the packets of a round, which are returned.
     fn send(&mut self, stamp: Stamp) -> Result<Vec<(NodeId, Packet)>, Failure> {
         let mut packets = Vec::new();
-        let seats = self.parts.crew.seats_mut().iter_mut();
-        for ((seat, sender), events) in seats.zip(&self.senders).zip(&mut self.events) {
-            let told = seat.events().into_iter();
+        let nodes = self.parts.nodes.nodes_mut().iter_mut();
+        for ((node, sender), events) in nodes.zip(&self.senders).zip(&mut self.events) {
+            let told = node.events().into_iter();
             events.extend(told.map(|event| (stamp.round, stamp.answer, event)));
-            let (letters, asks) = seat.letters().map_err(internal)?;
+            let (letters, asks) = node.letters().map_err(internal)?;
             let packet = Packet {
                 stamp,
-                next: seat.next_after(stamp.round),
+                next: node.next_after(stamp.round),
                 asks,
-                is_over: seat.is_over(),
-                position: seat.body().into(),
+                is_over: node.is_over(),
+                position: node.body().into(),
                 letters,
             };
             let bytes = packet.encode().map_err(internal)?;
@@ -431,7 +431,7 @@ impl<'a> Process<'a> {
             self.sent.messages += packet.letters.len() as u64;
             self.sent.bytes += bytes.len() as u64;
             sender.send(bytes);
-            packets.push((seat.id, packet));
+            packets.push((node.id, packet));
         }
         Ok(packets)
     }
@@ -471,13 +471,13 @@ impl<'a> Process<'a> {
             given_up: self.given_up,
             ..self.sent
         };
-        let seats = self.parts.crew.seats_mut().iter().zip(&self.senders).zip(&mut self.events);
-        for ((seat, sender), events) in seats {
+        let nodes = self.parts.nodes.nodes_mut().iter().zip(&self.senders).zip(&mut self.events);
+        for ((node, sender), events) in nodes {
             let report = Report {
                 step: period as usize,
-                robot: seat.robot_report(),
+                robot: node.robot_report(),
                 events: std::mem::take(events),
-                end: seat.known_end().map(Into::into),
+                end: node.known_end().map(Into::into),
                 tally,
             };
             sender.report(serde_json::to_vec(&report).map_err(internal)?);
@@ -487,11 +487,11 @@ impl<'a> Process<'a> {
 
     /// The robots move until the next control period begins.
     fn move_on(&mut self, begin: Instant) -> Result<(), Failure> {
-        let duration = self.parts.crew.flow().map_err(internal)?;
-        if let (Some(memory), Some(seat)) =
-            (&mut self.parts.memory, self.parts.crew.seats_mut().first())
+        let duration = self.parts.nodes.flow().map_err(internal)?;
+        if let (Some(memory), Some(node)) =
+            (&mut self.parts.memory, self.parts.nodes.nodes_mut().first())
         {
-            memory.write(seat.body().into())?;
+            memory.write(node.body().into())?;
         }
         if self.options.real_time {
             let rest = Duration::from_secs_f64(duration).saturating_sub(begin.elapsed());

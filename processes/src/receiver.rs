@@ -8,7 +8,7 @@ use crate::packet::{Letter, Packet, Refusal, Refusals, open};
 use crate::repeats::Heard;
 use pleach::automaton::network::{Message, Radio, Site};
 use pleach::automaton::node::{
-    Delivery, Destination, Envelope, FullMesh, Medium, NodeId, Unreliable, Weather,
+    Delivery, Destination, Envelope, FullMesh, Medium, MessageFaults, NodeId, Unreliable,
 };
 use pleach::continuous::Point;
 use std::collections::BTreeMap;
@@ -32,10 +32,11 @@ impl Receiver {
     /// are out of reach until they are heard. Messages over the radio are lost with probability
     /// `loss`, drawn from `seed`.
     pub fn new(site: &Arc<Site>, bodies: Vec<Point>, loss: f64, seed: u64) -> Self {
-        let weather = Weather { loss, wired_from: Some(site.robots), ..Weather::default() };
+        let messages =
+            MessageFaults { loss, wired_from: Some(site.robots), ..MessageFaults::default() };
         let mut radio = Radio::new(site);
         radio.update(&bodies);
-        let air = Unreliable::new(FullMesh::new(), weather, seed);
+        let air = Unreliable::new(FullMesh::new(), messages, seed);
         let (site, heard, beacons) = (Arc::clone(site), Heard::default(), BTreeMap::new());
         Receiver { site, radio, bodies, air, heard, beacons }
     }

@@ -8,7 +8,7 @@ use pleach::automaton::network::{Message, Network, Radio, Site};
 use pleach::automaton::node::{Delivery, Destination, Envelope, Medium, NodeId};
 use pleach::continuous::Point;
 use pleach::discrete::network::IdSet;
-use pleach_processes::crew::Crew;
+use pleach_processes::local_nodes::LocalNodes;
 use pleach_processes::packet::{LONGEST_PACKET, Letter, Packet, Refusal, Stamp, open};
 use pleach_processes::repeats::{Content, Heard};
 use pleach_processes::report::Report;
@@ -232,29 +232,29 @@ proptest! {
         periods in proptest::collection::vec(proptest::collection::vec((hostile(), 0..40u32), 0..60), 1..5),
     ) {
         let robots = scenario().robot.len();
-        let mut crew = match node.checked_sub(robots) {
-            None => Crew::robot(scenario(), node, scenario().robot[node].position.into()),
-            Some(number) => Crew::access_points(scenario(), [number]).unwrap(),
+        let mut nodes = match node.checked_sub(robots) {
+            None => LocalNodes::robot(scenario(), node, scenario().robot[node].position.into()),
+            Some(number) => LocalNodes::access_points(scenario(), [number]).unwrap(),
         };
         for letters in periods {
-            crew.begin_period();
+            nodes.begin_period();
             for round in 1..400 {
                 let heard: Vec<_> = letters
                     .iter()
                     .filter(|((from, _), at)| *at == round && *from != node)
                     .filter_map(|((from, letter), _)| Some((*from, node, open(&letter.message, *from, site()).ok()?)))
                     .collect();
-                prop_assert!(crew.tick(round).is_ok());
-                prop_assert!(crew.hear(&heard).is_ok());
-                for seat in crew.seats_mut() {
-                    prop_assert!(seat.letters().is_ok());
+                prop_assert!(nodes.tick(round).is_ok());
+                prop_assert!(nodes.hear(&heard).is_ok());
+                for node in nodes.nodes_mut() {
+                    prop_assert!(node.letters().is_ok());
                 }
             }
-            for seat in crew.seats_mut() {
-                let _ = serde_json::to_string(&seat.robot_report()).unwrap();
-                prop_assert!(seat.body().iter().all(|number| number.is_finite()));
+            for node in nodes.nodes_mut() {
+                let _ = serde_json::to_string(&node.robot_report()).unwrap();
+                prop_assert!(node.body().iter().all(|number| number.is_finite()));
             }
-            prop_assert!(crew.flow().is_ok());
+            prop_assert!(nodes.flow().is_ok());
         }
     }
 }

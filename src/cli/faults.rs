@@ -3,8 +3,8 @@
 use super::status::Failure;
 use clap::Args;
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::automaton::network::{Crash, Trouble};
-use pleach::automaton::node::Weather;
+use pleach::automaton::network::{Crash, NodeFaults};
+use pleach::automaton::node::MessageFaults;
 use pleach::verify::network::storm::Storm;
 use std::str::FromStr;
 
@@ -41,8 +41,8 @@ impl FaultArguments {
         let period = scenario.settings().period;
         Ok(Some(Storm {
             seed: self.loss_seed,
-            weather: Weather { loss: self.loss.0, ..Weather::default() },
-            troubles: self.stop.iter().map(|stop| stop.trouble(period)).collect(),
+            messages: MessageFaults { loss: self.loss.0, ..MessageFaults::default() },
+            nodes: self.stop.iter().map(|stop| stop.faults(period)).collect(),
         }))
     }
 }
@@ -92,10 +92,10 @@ pub struct Stop {
 
 impl Stop {
     /// What the node has, where control periods take `period` seconds.
-    fn trouble(&self, period: f64) -> (usize, Trouble) {
+    fn faults(&self, period: f64) -> (usize, NodeFaults) {
         let time = |step: usize| step as f64 * period;
         let crash = Crash { time: time(self.from), inputs: 0, back: self.to.map(time) };
-        (self.robot, Trouble { crash: Some(crash), ..Trouble::default() })
+        (self.robot, NodeFaults { crash: Some(crash), ..NodeFaults::default() })
     }
 }
 

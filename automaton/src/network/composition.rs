@@ -15,7 +15,7 @@ use pleach_continuous::Point;
 use pleach_discrete::network::Stage;
 
 use super::access_point::AccessPoint;
-use super::frail::Frail;
+use super::faulty_node::FaultyNode;
 use super::medium::Radio;
 use super::member::{Member, Sense};
 use super::message::Message;
@@ -78,7 +78,7 @@ const SAME: f64 = 1e-6;
 /// about to change their places in the tree.
 pub const LONGEST_SETTLING: usize = 8;
 
-/// The network of robots. Its nodes are [`Member`]s, or [`Frail`](super::Frail) ones.
+/// The network of robots. Its nodes are [`Member`]s, or [`FaultyNode`](super::FaultyNode) ones.
 pub struct Network<M = Radio, N: RobotNode = Member> {
     pub(super) site: Arc<Site>,
     pub(super) nodes: Ensemble<N, M>,
@@ -159,13 +159,13 @@ impl RobotNode for Member {
     }
 }
 
-impl RobotNode for Frail {
+impl RobotNode for FaultyNode {
     fn member(&self) -> &Member {
-        Frail::member(self)
+        FaultyNode::member(self)
     }
 
     fn is_running(&self) -> bool {
-        Frail::is_running(self)
+        FaultyNode::is_running(self)
     }
 }
 

@@ -17,7 +17,7 @@
 
 use std::convert::Infallible;
 
-use super::rows::{Rows, Seat, Steps};
+use super::chunks::{Chunks, Slot, Steps};
 use super::{Medium, Node, NodeId, Observed};
 use crate::Participants;
 use crate::executor::{Round, System};
@@ -46,7 +46,7 @@ pub struct Traffic {
 /// another past the medium.
 #[derive(Debug)]
 pub struct Ensemble<N: Node, M> {
-    rows: Rows<N>,
+    chunks: Chunks<N>,
     medium: M,
     bodies: Vec<N::Body>,
     has_moved: bool,
@@ -59,18 +59,18 @@ pub struct Ensemble<N: Node, M> {
 impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     /// These nodes, numbered from 0, over this medium.
     pub fn new(nodes: Vec<N>, medium: M) -> Self {
-        let rows = Rows::new(nodes);
-        Ensemble { rows, medium, bodies: Vec::new(), has_moved: true, round: 1, deliveries: 0 }
+        let chunks = Chunks::new(nodes);
+        Ensemble { chunks, medium, bodies: Vec::new(), has_moved: true, round: 1, deliveries: 0 }
     }
 
     /// The number of nodes.
     pub fn len(&self) -> usize {
-        self.rows.nodes.len()
+        self.chunks.nodes.len()
     }
 
     /// Whether there is no node.
     pub fn is_empty(&self) -> bool {
-        self.rows.nodes.is_empty()
+        self.chunks.nodes.is_empty()
     }
 
     /// The medium.
@@ -86,21 +86,21 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     /// The error of the node.
     pub fn sense(&mut self, node: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
         self.update_medium();
-        self.rows.sense(node, sensed)?;
-        self.rows.send(&mut self.medium);
+        self.chunks.sense(node, sensed)?;
+        self.chunks.send(&mut self.medium);
         Ok(())
     }
 
     /// What the nodes have told observers since the last call, in its order.
     pub fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, N::Report)> {
-        self.rows.drain_reports()
+        self.chunks.drain_reports()
     }
 
     /// Tells the medium where the nodes are, if time has passed.
     fn update_medium(&mut self) {
         if std::mem::take(&mut self.has_moved) {
             self.bodies.clear();
-            self.bodies.extend(self.rows.nodes.iter().map(Node::body));
+            self.bodies.extend(self.chunks.nodes.iter().map(Node::body));
             self.medium.update(&self.bodies);
         }
     }
@@ -112,44 +112,44 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
             return Ok(false);
         }
         self.deliveries += 1;
-        let Ensemble { rows, medium, round, deliveries, .. } = self;
+        let Ensemble { chunks, medium, round, deliveries, .. } = self;
         if let Some(mail) = medium.mail() {
-            rows.take(&Steps { mail: Some((mail, *deliveries)), round: *round })?;
+            chunks.take(&Steps { mail: Some((mail, *deliveries)), round: *round })?;
         } else {
-            medium.deliver(|delivery| rows.hear(delivery, *deliveries))?;
+            medium.deliver(|delivery| chunks.hear(delivery, *deliveries))?;
         }
-        rows.send(medium);
-        Ok(rows.seats.iter().any(|seat| seat.heard == *deliveries))
+        chunks.send(medium);
+        Ok(chunks.slots.iter().any(|slot| slot.heard == *deliveries))
     }
 
     /// Says whether any clock was due.
     fn tick(&mut self) -> Result<bool, N::Error> {
-        let Some(next) = self.rows.seats.iter().filter_map(|seat| seat.ticks).min() else {
+        let Some(next) = self.chunks.slots.iter().filter_map(|slot| slot.ticks).min() else {
             return Ok(false);
         };
         // What a node has heard may make it tick earlier than it has said, and not in the past.
         self.round = next.max(self.round);
-        self.rows.take(&Steps { mail: None, round: self.round })?;
-        self.rows.send(&mut self.medium);
+        self.chunks.take(&Steps { mail: None, round: self.round })?;
+        self.chunks.send(&mut self.medium);
         Ok(true)
     }
 
     /// Whether nodes have ticked in this round.
     fn has_ticked(&self) -> bool {
-        self.rows.seats.iter().any(|seat| seat.ticked == self.round)
+        self.chunks.slots.iter().any(|slot| slot.ticked == self.round)
     }
 
-    /// Records a jump of the nodes in whose seats this holds.
+    /// Records a jump of the nodes in whose slots this holds.
     fn record(
         &self,
         round: &mut Round<'_, NodeJump>,
         jump: NodeJump,
-        takes_part: impl Fn(&Seat) -> bool,
+        takes_part: impl Fn(&Slot) -> bool,
     ) {
         round.jumped_by(jump, || {
-            let seats = self.rows.seats.iter().enumerate();
+            let slots = self.chunks.slots.iter().enumerate();
             let by: Box<[NodeId]> =
-                seats.filter(|(_, seat)| takes_part(seat)).map(|(id, _)| id).collect();
+                slots.filter(|(_, slot)| takes_part(slot)).map(|(id, _)| id).collect();
             if by.len() == self.len() { Participants::All } else { Participants::Some(by) }
         });
     }
@@ -159,31 +159,31 @@ impl<N: Node, M> Ensemble<N, M> {
     /// How much a node has sent and heard since the messages were last counted anew; observers
     /// ask for it, and nothing if there is no such node.
     pub fn traffic(&self, node: NodeId) -> Traffic {
-        self.rows.seats.get(node).map_or_else(Traffic::default, |seat| seat.traffic)
+        self.chunks.slots.get(node).map_or_else(Traffic::default, |slot| slot.traffic)
     }
 
     /// Counts messages anew.
     pub fn forget_traffic(&mut self) {
-        self.rows.seats.iter_mut().for_each(|seat| seat.traffic = Traffic::default());
+        self.chunks.slots.iter_mut().for_each(|slot| slot.traffic = Traffic::default());
     }
 }
 
 impl<N: Node, M> Ensemble<N, M> {
     /// The nodes, by number, for the program that has set them up.
     pub fn nodes(&self) -> &[N] {
-        &self.rows.nodes
+        &self.chunks.nodes
     }
 }
 
 impl<N: Node + Observed, M> Ensemble<N, M> {
     /// What observers see of each node, by number.
     pub fn views(&self) -> impl ExactSizeIterator<Item = N::View<'_>> {
-        self.rows.nodes.iter().map(Observed::view)
+        self.chunks.nodes.iter().map(Observed::view)
     }
 
     /// What observers see of one node, if there is one with this number.
     pub fn view(&self, node: NodeId) -> Option<N::View<'_>> {
-        self.rows.nodes.get(node).map(Observed::view)
+        self.chunks.nodes.get(node).map(Observed::view)
     }
 }
 
@@ -199,23 +199,23 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), N::Error> {
         self.update_medium();
         if !self.has_ticked() && self.deliver()? {
-            self.record(round, NodeJump::Heard, |seat| seat.heard == self.deliveries);
+            self.record(round, NodeJump::Heard, |slot| slot.heard == self.deliveries);
         } else if self.has_ticked() || self.tick()? {
-            self.record(round, NodeJump::Ticked, |seat| seat.ticked == self.round);
+            self.record(round, NodeJump::Ticked, |slot| slot.ticked == self.round);
             self.round += 1;
         }
         Ok(())
     }
 
     fn time_to_jump(&self) -> Result<Option<f64>, N::Error> {
-        let ticks = self.rows.nodes.iter().filter_map(Node::time_to_tick);
+        let ticks = self.chunks.nodes.iter().filter_map(Node::time_to_tick);
         Ok(ticks.chain(self.medium.time_to_arrival()).reduce(f64::min))
     }
 
     fn flow(&mut self, duration: f64) -> Result<(), N::Error> {
         (self.has_moved, self.round) = (true, 1);
         self.medium.flow(duration);
-        self.rows.flow(duration)
+        self.chunks.flow(duration)
     }
 }
 
@@ -372,7 +372,7 @@ mod tests {
             |is_patient| Clerk { is_patient, rounds: 0, has_news: false, ticks: Vec::new() };
         let mut ensemble = Ensemble::new(vec![clerk(true), clerk(false)], FullMesh::new());
         Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut ()).unwrap();
-        let ticks: Vec<_> = ensemble.rows.nodes.iter().map(|clerk| clerk.ticks.clone()).collect();
+        let ticks: Vec<_> = ensemble.chunks.nodes.iter().map(|clerk| clerk.ticks.clone()).collect();
         assert_eq!(ticks, [vec![4, 6], vec![1, 2, 3, 4, 5, 6]]);
     }
 
@@ -382,7 +382,7 @@ mod tests {
         let (mut ensemble, mut trace) =
             (Ensemble::new(vec![patient], FullMesh::new()), Trace::new());
         Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut trace).unwrap();
-        assert_eq!((trace.entries().len(), &ensemble.rows.nodes[0].ticks[..]), (1, &[6][..]));
+        assert_eq!((trace.entries().len(), &ensemble.chunks.nodes[0].ticks[..]), (1, &[6][..]));
     }
 
     /// What a person asks of a node is told to every other, and observers hear of it in order.
@@ -504,7 +504,7 @@ mod tests {
 
         fn outcome(nodes: &[Adder], medium: impl Medium<u64, ()>, threads: usize) -> Outcome {
             let mut ensemble = Ensemble::new(nodes.to_vec(), medium);
-            ensemble.rows.threads = threads;
+            ensemble.chunks.threads = threads;
             let mut trace = Trace::new();
             Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut trace).unwrap();
             let reports = ensemble.drain_reports().collect();

@@ -8,7 +8,7 @@ use super::{Delivery, Envelope, NodeId};
 pub struct Mail<M> {
     sent: Vec<Envelope<M>>,
     /// The places of the messages among those sent.
-    letters: Vec<u32>,
+    places: Vec<u32>,
     /// Where those of each node end.
     ends: Vec<usize>,
 }
@@ -16,7 +16,7 @@ pub struct Mail<M> {
 impl<M> Mail<M> {
     /// Nothing arrives.
     pub const fn new() -> Self {
-        Mail { sent: Vec::new(), letters: Vec::new(), ends: Vec::new() }
+        Mail { sent: Vec::new(), places: Vec::new(), ends: Vec::new() }
     }
 
     /// Replaces what it holds by these messages, sorted by receiver. `receivers_of` gives the nodes that hear a message,
@@ -27,7 +27,7 @@ impl<M> Mail<M> {
         nodes: usize,
         receivers_of: impl Fn(&Envelope<M>) -> &'a [NodeId],
     ) {
-        let Mail { sent, letters, ends } = self;
+        let Mail { sent, places, ends } = self;
         sent.clear();
         std::mem::swap(sent, messages);
         ends.clear();
@@ -39,10 +39,10 @@ impl<M> Mail<M> {
             // Until its messages are entered, each node's end is where they begin.
             count += std::mem::replace(end, count);
         }
-        letters.resize(count, 0);
-        for (letter, receivers) in (0..).zip(receivers) {
+        places.resize(count, 0);
+        for (place, receivers) in (0..).zip(receivers) {
             for &to in receivers {
-                letters[ends[to]] = letter;
+                places[ends[to]] = place;
                 ends[to] += 1;
             }
         }
@@ -50,20 +50,20 @@ impl<M> Mail<M> {
 
     /// How many messages arrive, counted for each node that hears them.
     pub const fn len(&self) -> usize {
-        self.letters.len()
+        self.places.len()
     }
 
     /// Whether nothing arrives.
     pub const fn is_empty(&self) -> bool {
-        self.letters.is_empty()
+        self.places.is_empty()
     }
 
     /// What a node hears.
     pub fn of(&self, to: NodeId) -> impl ExactSizeIterator<Item = Delivery<'_, M>> {
-        let end = |node: NodeId| self.ends.get(node).copied().unwrap_or(self.letters.len());
+        let end = |node: NodeId| self.ends.get(node).copied().unwrap_or(self.places.len());
         let begin = to.checked_sub(1).map_or(0, end);
-        self.letters[begin..end(to)].iter().map(move |&letter| {
-            let Envelope { from, message, .. } = &self.sent[letter as usize];
+        self.places[begin..end(to)].iter().map(move |&place| {
+            let Envelope { from, message, .. } = &self.sent[place as usize];
             Delivery { from: *from, to, message }
         })
     }

@@ -15,18 +15,18 @@
 //! Nothing but messages goes from node to node. What a person wants to know of a node is its
 //! [view](Observed), and nodes cannot ask each other for it.
 
+mod chunks;
 mod ensemble;
 mod mail;
 mod medium;
 mod outputs;
-mod rows;
-mod weather;
+mod unreliable;
 
 pub use ensemble::{Ensemble, NodeJump, Traffic};
 pub use mail::Mail;
 pub use medium::{Delivery, FullMesh, Medium};
 pub use outputs::{Destination, Envelope, Outputs};
-pub use weather::{Partition, Unreliable, Weather};
+pub use unreliable::{MessageFaults, Partition, Unreliable};
 
 /// The number of a node in its ensemble, from 0.
 pub type NodeId = usize;

@@ -246,23 +246,23 @@ pub(super) fn combine_differences<const M: usize, const N: usize>(
     // It stays 0 while everything is finite.
     let mut trace = 0.0;
     let mut place = 0;
-    while place + ABREAST <= dimension {
-        trace += combine_abreast::<ABREAST, M, N>(&mut targets, place, step, &weights, &stages);
-        place += ABREAST;
+    while place + LANES <= dimension {
+        trace += combine_in_lanes::<LANES, M, N>(&mut targets, place, step, &weights, &stages);
+        place += LANES;
     }
     while place < dimension {
-        trace += combine_abreast::<1, M, N>(&mut targets, place, step, &weights, &stages);
+        trace += combine_in_lanes::<1, M, N>(&mut targets, place, step, &weights, &stages);
         place += 1;
     }
     trace == 0.0
 }
 
 /// How many components are combined at once: what is read of them is used for all targets.
-const ABREAST: usize = 4;
+const LANES: usize = 4;
 
 /// Combines the components from `place` on; 0 if all are finite.
 #[inline]
-fn combine_abreast<const LANES: usize, const M: usize, const N: usize>(
+fn combine_in_lanes<const LANES: usize, const M: usize, const N: usize>(
     targets: &mut [&mut [f64]; M],
     place: usize,
     step: f64,

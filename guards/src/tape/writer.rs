@@ -177,7 +177,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The batch as stretches of one of [`WIDTHS`] and single operations: such that each result takes
-    /// as few instructions as can be, with those that gather operands which do not lie abreast.
+    /// as few instructions as can be, with those that gather operands which do not lie side by side.
     fn stretches<'b>(
         &self,
         batch: &'b [usize],
@@ -210,7 +210,7 @@ impl<'a> Writer<'a> {
         (0..count).map(|place| deeds.iter().map(|(_, values)| values[place]).collect()).collect()
     }
 
-    /// A constant that is read abreast has as many places as results are computed from it.
+    /// A constant that is read in lanes has as many places as results are computed from it.
     fn layout(
         &self,
         variables: usize,
@@ -257,7 +257,7 @@ impl<'a> Writer<'a> {
         let mut batches = Vec::new();
         while let Some((&commonest, _)) = ready.iter().max_by_key(|(_, numbers)| numbers.len()) {
             let mut batch = ready.remove(&commonest).unwrap_or_default();
-            // In the order in which they were written, equal parts of a model lie abreast.
+            // In the order in which they were written, equal parts of a model lie side by side.
             batch.sort_unstable();
             for &number in &batch {
                 for &next in &needed_by[number] {
@@ -361,7 +361,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Whether operands are in places one after another, as those of operations abreast are.
+/// Whether operands are in places one after another, as those of operations in lanes are.
 fn follow_each_other(values: &[Value], order: &[u32]) -> bool {
     values.windows(2).all(|pair| match (pair[0], pair[1]) {
         (Value::Variable(one), Value::Variable(next)) => next == one + 1,

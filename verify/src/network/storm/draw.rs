@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use pleach_automaton::network::scenario::{InvalidScenario, Settings, ValidScenario};
-use pleach_automaton::network::{Crash, Trouble};
-use pleach_automaton::node::{Partition, Weather};
+use pleach_automaton::network::{Crash, NodeFaults};
+use pleach_automaton::node::{MessageFaults, Partition};
 use pleach_continuous::geometry::Errors;
 
 use super::Storm;
@@ -129,7 +129,7 @@ pub fn allowing_for(
     ValidScenario::new(stated)
 }
 
-/// Foul weather ends after this many times the duration of the mission: then everything is done.
+/// The faults of messages end after this many times the duration of the mission: then everything is done.
 const CLEARS_AFTER: f64 = 1.5;
 /// Seconds after which faults that come later begin.
 const LATER: f64 = 20.0;
@@ -139,46 +139,50 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
     let mut draws = Draws(seed.wrapping_mul(0xD1B5_4A32_D192_ED03) ^ duration.to_bits());
     let robots = scenario.robot.len();
     let mut storm = Storm { seed, ..Storm::default() };
-    let weather = &mut storm.weather;
+    let messages = &mut storm.messages;
     match kind {
         Kind::Loss { rate, later } => {
-            weather.loss = rate;
-            weather.begin = if later { LATER } else { 0.0 };
+            messages.loss = rate;
+            messages.begin = if later { LATER } else { 0.0 };
         }
-        Kind::Delay => (weather.lateness, weather.longest_delay) = (0.1, 6),
-        Kind::Copies => (weather.copies, weather.longest_delay) = (0.1, 60),
-        Kind::Silence => weather.silence = 0.1,
-        Kind::Partition => weather.partitions = partitions(&mut draws, robots, duration),
-        Kind::Radio => *weather = foul(&mut draws, robots, duration),
+        Kind::Delay => (messages.lateness, messages.longest_delay) = (0.1, 6),
+        Kind::Copies => (messages.copies, messages.longest_delay) = (0.1, 60),
+        Kind::Silence => messages.silence = 0.1,
+        Kind::Partition => messages.partitions = partitions(&mut draws, robots, duration),
+        Kind::Radio => *messages = any_faults(&mut draws, robots, duration),
         Kind::Crash | Kind::Restart => {
-            storm.troubles = vec![crash(&mut draws, 0..robots, duration, kind == Kind::Restart)];
+            storm.nodes = vec![crash(&mut draws, 0..robots, duration, kind == Kind::Restart)];
         }
         Kind::Late => {
             let joins = Some(draws.between(5.0, duration / 2.0));
-            storm.troubles = vec![(draws.below(robots), Trouble { joins, ..Trouble::default() })];
+            storm.nodes =
+                vec![(draws.below(robots), NodeFaults { joins, ..NodeFaults::default() })];
         }
         Kind::Motion(_) | Kind::Position(_) | Kind::Errors(_) => {
             let Errors { position, motion } = kind.errors(scenario);
-            let trouble =
-                Trouble { position_error: position, motion_error: motion, ..Trouble::default() };
-            storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
+            let faults = NodeFaults {
+                position_error: position,
+                motion_error: motion,
+                ..NodeFaults::default()
+            };
+            storm.nodes = (0..robots).map(|robot| (robot, faults.clone())).collect();
         }
         Kind::Clocks => shift_clocks(&mut storm, &mut draws, scenario),
         Kind::AccessPoint => {
             if draws.below(2) == 0 {
-                *weather = foul(&mut draws, robots, duration);
+                *messages = any_faults(&mut draws, robots, duration);
             }
             let access_points = robots..robots + scenario.access_point.len();
             let comes_back = seed.is_multiple_of(2);
-            storm.troubles = vec![crash(&mut draws, access_points, duration, comes_back)];
+            storm.nodes = vec![crash(&mut draws, access_points, duration, comes_back)];
         }
         Kind::Everything => {
-            *weather = foul(&mut draws, robots, duration);
+            *messages = any_faults(&mut draws, robots, duration);
             for _ in 0..1 + draws.below(3) {
                 let comes_back = draws.below(2) == 0;
-                let trouble = crash(&mut draws, 0..robots, duration, comes_back);
-                if storm.troubles.iter().all(|(node, _)| *node != trouble.0) {
-                    storm.troubles.push(trouble);
+                let faults = crash(&mut draws, 0..robots, duration, comes_back);
+                if storm.nodes.iter().all(|(node, _)| *node != faults.0) {
+                    storm.nodes.push(faults);
                 }
             }
             if draws.below(2) == 0 {
@@ -193,15 +197,15 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
 fn shift_clocks(storm: &mut Storm, draws: &mut Draws, scenario: &ValidScenario) {
     for node in 0..scenario.robot.len() + scenario.access_point.len() {
         let shift = draws.between(0.0, scenario.settings().period);
-        match storm.troubles.iter_mut().find(|(troubled, _)| *troubled == node) {
-            Some((_, trouble)) => trouble.shift = shift,
-            None => storm.troubles.push((node, Trouble { shift, ..Trouble::default() })),
+        match storm.nodes.iter_mut().find(|(troubled, _)| *troubled == node) {
+            Some((_, faults)) => faults.shift = shift,
+            None => storm.nodes.push((node, NodeFaults { shift, ..NodeFaults::default() })),
         }
     }
 }
 
-fn foul(draws: &mut Draws, robots: usize, duration: f64) -> Weather {
-    Weather {
+fn any_faults(draws: &mut Draws, robots: usize, duration: f64) -> MessageFaults {
+    MessageFaults {
         loss: draws.between(0.0, 0.5),
         silence: draws.between(0.0, 0.1),
         lateness: draws.between(0.0, 0.2),
@@ -231,9 +235,12 @@ fn crash(
     nodes: Range<usize>,
     duration: f64,
     comes_back: bool,
-) -> (usize, Trouble) {
+) -> (usize, NodeFaults) {
     let time = draws.between(1.0, duration);
     let back = comes_back.then(|| time + draws.between(1.0, 60.0));
     let crash = Crash { time, inputs: draws.below(400) as u32, back };
-    (nodes.start + draws.below(nodes.len()), Trouble { crash: Some(crash), ..Trouble::default() })
+    (
+        nodes.start + draws.below(nodes.len()),
+        NodeFaults { crash: Some(crash), ..NodeFaults::default() },
+    )
 }

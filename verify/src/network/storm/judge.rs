@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use pleach_automaton::network::Frail;
+use pleach_automaton::network::FaultyNode;
 use pleach_automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_automaton::node::Observed;
@@ -58,7 +58,7 @@ impl Judge {
     }
 
     /// Robots are about to move; these are the events of the control period that ends.
-    pub fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent], nodes: &[Frail]) {
+    pub fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent], nodes: &[FaultyNode]) {
         if let Err(malformed) = instant::record(snapshot, &self.limits) {
             return self.find(Err(malformed));
         }
@@ -86,7 +86,7 @@ impl Judge {
     }
 
     /// A node that begins next to another one, which did not know of it, counts when it is clear of it.
-    fn count_begun(&mut self, seen: &Snapshot, nodes: &[Frail]) {
+    fn count_begun(&mut self, seen: &Snapshot, nodes: &[FaultyNode]) {
         let (places, bound) = (&seen.positions, self.limits.separation() - SLACK);
         let is_clear = |node: usize| {
             places.get(node).is_none_or(|place| {
@@ -123,7 +123,7 @@ impl Judge {
         self.find(period::service(period, &limits));
     }
 
-    fn look_at_instant(&mut self, seen: &Snapshot, nodes: &[Frail]) {
+    fn look_at_instant(&mut self, seen: &Snapshot, nodes: &[FaultyNode]) {
         let limits = self.limits.clone();
         self.find(instant::shares(seen, &limits));
         // What flows to a node that does not run is lost.
@@ -137,9 +137,10 @@ impl Judge {
 }
 
 /// [`Property::RootedTree`]: no post is attached to itself, directly or over others.
-fn rooted(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
-    let held =
-        |node: &Frail| node.member().view().robot().and_then(|robot| robot.duty().post().copied());
+fn rooted(seen: &Snapshot, nodes: &[FaultyNode]) -> Result<(), Violation> {
+    let held = |node: &FaultyNode| {
+        node.member().view().robot().and_then(|robot| robot.duty().post().copied())
+    };
     let attached = |post: Post| match post.parent {
         Some(Anchor::Post(parent)) => Some((post.id, parent)),
         _ => None,
@@ -165,7 +166,7 @@ fn rooted(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
 
 /// [`Property::SingleLeader`]: no two robots lead by the same announcement. One that has given the
 /// leader's duty in an exchange does not count.
-fn led(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
+fn led(seen: &Snapshot, nodes: &[FaultyNode]) -> Result<(), Violation> {
     let mut announcements = Vec::new();
     for (robot, node) in nodes.iter().enumerate().take(seen.roles.len()) {
         if let Some(known) = node.member().view().robot().filter(|_| node.is_running()) {
@@ -185,7 +186,7 @@ fn led(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
 /// [`Property::Duties`]: no two robots count as holders of one fixed post. Of two that exchange
 /// their duties the one that has given its own does not; nor does a robot on Σ whose post has been
 /// taken by the robot behind: it stays in its place until it knows.
-fn held_once(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
+fn held_once(seen: &Snapshot, nodes: &[FaultyNode]) -> Result<(), Violation> {
     let mut held = Vec::new();
     for (number, node) in nodes.iter().enumerate().filter(|(_, node)| node.is_running()) {
         let Some(robot) = node.member().view().robot() else { continue };

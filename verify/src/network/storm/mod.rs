@@ -1,7 +1,7 @@
 //! Storms: missions in which the radio, the nodes and the bodies fail.
 //!
 //! The nodes are those that run everywhere. [`Unreliable`] loses, delays and copies their messages,
-//! [`Frail`] stops them, brings them back and disturbs their bodies; both by the draws of a seed. The
+//! [`FaultyNode`] stops them, brings them back and disturbs their bodies; both by the draws of a seed. The
 //! [`Judge`] looks at true positions, and at what must hold whatever fails. A [`Storm`] that breaks
 //! it [shrinks](shrink) to fewer faults that still do.
 
@@ -15,9 +15,10 @@ use std::sync::Arc;
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_automaton::network::{
-    AccessPoint, Frail, Member, Message, Network, NetworkError, Radio, Robot, Site, Trouble, User,
+    AccessPoint, FaultyNode, Member, Message, Network, NetworkError, NodeFaults, Radio, Robot,
+    Site, User,
 };
-use pleach_automaton::node::{Medium, Unreliable, Weather};
+use pleach_automaton::node::{Medium, MessageFaults, Unreliable};
 use pleach_automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use pleach_continuous::Point;
 
@@ -32,24 +33,24 @@ pub struct Storm {
     /// Decides which messages fail, and on errors.
     pub seed: u64,
     /// What becomes of messages.
-    pub weather: Weather,
+    pub messages: MessageFaults,
     /// The faults of nodes, by number; the others have none.
-    pub troubles: Vec<(usize, Trouble)>,
+    pub nodes: Vec<(usize, NodeFaults)>,
 }
 
 impl Storm {
     /// What fails, as far as that decides on what must hold. A node that is cut off is given up like
     /// one that stops.
     pub fn faults(&self) -> Faults {
-        let Weather { loss, silence, lateness, copies, partitions, .. } = &self.weather;
-        let troubles = || self.troubles.iter().map(|(_, trouble)| trouble);
-        let is_shifted = |trouble: &Trouble| trouble.shift > 0.0;
-        let stops = |trouble: &Trouble| trouble.crash.is_some() || trouble.joins.is_some();
+        let MessageFaults { loss, silence, lateness, copies, partitions, .. } = &self.messages;
+        let nodes = || self.nodes.iter().map(|(_, faults)| faults);
+        let is_shifted = |faults: &NodeFaults| faults.shift > 0.0;
+        let stops = |faults: &NodeFaults| faults.crash.is_some() || faults.joins.is_some();
         Faults {
             messages: [loss, silence, lateness, copies].into_iter().any(|chance| *chance > 0.0)
                 || !partitions.is_empty()
-                || troubles().any(is_shifted),
-            nodes: !partitions.is_empty() || troubles().any(stops),
+                || nodes().any(is_shifted),
+            nodes: !partitions.is_empty() || nodes().any(stops),
         }
     }
 }
@@ -87,13 +88,13 @@ pub struct Verdict {
 }
 
 /// The network of a scenario in a storm.
-pub type Stormy = Network<Unreliable<Message, Radio>, Frail>;
+pub type StormyNetwork = Network<Unreliable<Message, Radio>, FaultyNode>;
 
 /// Sets a network up in a storm.
 ///
 /// # Errors
 /// When the network cannot be set up.
-pub fn network(scenario: &ValidScenario, storm: &Storm) -> Result<Stormy, NetworkError> {
+pub fn network(scenario: &ValidScenario, storm: &Storm) -> Result<StormyNetwork, NetworkError> {
     network_on(Arc::clone(scenario.site()), scenario, storm)
 }
 
@@ -106,15 +107,15 @@ pub fn network_on(
     site: Arc<Site>,
     scenario: &ValidScenario,
     storm: &Storm,
-) -> Result<Stormy, NetworkError> {
+) -> Result<StormyNetwork, NetworkError> {
     let (robots, access_points) = (scenario.robot.len(), site.access_points.len());
     let of = |id: usize, place: Point, make: fn(usize, Point, f64, &Arc<Site>) -> Member| {
-        let known = storm.troubles.iter().find(|(node, _)| *node == id);
-        let trouble = known.map(|(_, trouble)| trouble.clone()).unwrap_or_default();
+        let known = storm.nodes.iter().find(|(node, _)| *node == id);
+        let faults = known.map(|(_, faults)| faults.clone()).unwrap_or_default();
         let rate = scenario.robot.get(id).map_or(0.0, |robot| robot.rate);
         let (maker_site, period) = (Arc::clone(&site), site.settings.period);
         let maker = Arc::new(move |place: Point| make(id, place, rate, &maker_site));
-        Frail::new(maker, place, period, trouble, storm.seed ^ (id as u64 + 1))
+        FaultyNode::new(maker, place, period, faults, storm.seed ^ (id as u64 + 1))
     };
     let nodes = (0..robots)
         .map(|id| {
@@ -131,29 +132,29 @@ pub fn network_on(
         .chain([of(robots + access_points, site.access_points[0], |_, _, _, site| {
             Member::User(Box::new(User::new(Arc::clone(site))))
         })]);
-    let weather = Weather { wired_from: Some(robots), ..storm.weather.clone() };
-    let medium = Unreliable::new(Radio::new(&site), weather, storm.seed);
+    let messages = MessageFaults { wired_from: Some(robots), ..storm.messages.clone() };
+    let medium = Unreliable::new(Radio::new(&site), messages, storm.seed);
     let nodes = nodes.collect();
     Network::of_nodes(scenario, Arc::clone(&site), medium, nodes)
 }
 
-/// Runs a mission through a storm, for at most this many control periods.
+/// Runs a mission in a storm and judges it, for at most this many control periods.
 ///
 /// # Errors
 /// When a node cannot go on.
-pub fn ride(
+pub fn judged_run(
     scenario: &ValidScenario,
     storm: &Storm,
     periods: usize,
 ) -> Result<Verdict, StormError> {
-    ride_watched(scenario, storm, periods, |_| {})
+    judged_run_watched(scenario, storm, periods, |_| {})
 }
 
 /// The same, where `watch` is given every snapshot.
 ///
 /// # Errors
 /// When a node cannot go on.
-pub fn ride_watched(
+pub fn judged_run_watched(
     scenario: &ValidScenario,
     storm: &Storm,
     periods: usize,
@@ -186,8 +187,13 @@ struct Log<F> {
     watch: F,
 }
 
-impl<M: Medium<Message, Point>, F: FnMut(&Snapshot)> Observer<Network<M, Frail>> for Log<F> {
-    fn flows(&mut self, network: &Network<M, Frail>, _: HybridTime, _: f64) -> ControlFlow<End> {
+impl<M: Medium<Message, Point>, F: FnMut(&Snapshot)> Observer<Network<M, FaultyNode>> for Log<F> {
+    fn flows(
+        &mut self,
+        network: &Network<M, FaultyNode>,
+        _: HybridTime,
+        _: f64,
+    ) -> ControlFlow<End> {
         let step = network.step();
         let snapshot = network.snapshot();
         (self.watch)(&snapshot);

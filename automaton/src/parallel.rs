@@ -5,7 +5,7 @@ use std::thread;
 
 /// Does each of these pieces of work once, on as many threads as given; a thread that is done with one takes the next
 /// that is left.
-pub(crate) fn abreast<T>(
+pub(crate) fn for_each<T>(
     threads: usize,
     pieces: impl IntoIterator<Item = T, IntoIter: Send>,
     work: impl Fn(T) + Sync,

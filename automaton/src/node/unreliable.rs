@@ -1,15 +1,15 @@
 //! A medium that fails: messages are lost, late, copied and overtaken, and links are cut.
 //!
 //! [`Unreliable`] stands between the nodes and another medium, which decides who is in range. What
-//! it does to messages is its [`Weather`]. Draws are those of a seed: the same nodes under the same
-//! weather hear the same messages in every run.
+//! it does to messages are its [`MessageFaults`]. Draws are those of a seed: the same nodes under the same
+//! faults hear the same messages in every run.
 
 use super::{Delivery, Envelope, Medium, NodeId};
 use crate::chance::Chance;
 
 /// What becomes of messages, and when.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Weather {
+pub struct MessageFaults {
     /// The probability that a message does not reach one of its receivers.
     pub loss: f64,
     /// The probability that nothing gets over a link in one direction for a whole second.
@@ -49,7 +49,7 @@ impl Partition {
     }
 }
 
-impl Weather {
+impl MessageFaults {
     /// Whether messages over this link may fail now.
     fn fails(&self, from: NodeId, to: NodeId, time: f64) -> bool {
         let is_wire = self.wired_from.is_some_and(|first| from >= first && to >= first);
@@ -69,11 +69,11 @@ impl Weather {
 /// Tells the draws of links apart: any odd number with its bits mixed will do.
 const LINK_STEP: u64 = 0xD6E8_FEB8_6659_FD93;
 
-/// A medium under a weather.
+/// A medium under a faults.
 #[derive(Clone, Debug)]
 pub struct Unreliable<M, W> {
     medium: W,
-    weather: Weather,
+    faults: MessageFaults,
     seed: u64,
     chance: Chance,
     time: f64,
@@ -93,11 +93,11 @@ struct Late<M> {
 }
 
 impl<M, W> Unreliable<M, W> {
-    /// This medium, under this weather; `seed` decides which messages fail.
-    pub fn new(medium: W, weather: Weather, seed: u64) -> Self {
+    /// This medium, under this faults; `seed` decides which messages fail.
+    pub fn new(medium: W, faults: MessageFaults, seed: u64) -> Self {
         Unreliable {
             medium,
-            weather,
+            faults,
             seed,
             chance: Chance::new(seed, 0),
             time: 0.0,
@@ -149,20 +149,20 @@ impl<M: Clone, B, W: Medium<M, B>> Medium<M, B> for Unreliable<M, W> {
         for Late { from, to, message, .. } in &arrived {
             hand_over(Delivery { from: *from, to: *to, message })?;
         }
-        let Unreliable { medium, weather, seed, chance, time, late, lost, .. } = self;
+        let Unreliable { medium, faults, seed, chance, time, late, lost, .. } = self;
         medium.deliver(|delivery| {
             let Delivery { from, to, message } = delivery;
-            if !weather.fails(from, to, *time) {
+            if !faults.fails(from, to, *time) {
                 return hand_over(delivery);
             }
             let mut happens = |probability: f64| probability > 0.0 && chance.share() < probability;
-            if happens(weather.loss) || weather.cuts(from, to, *time, *seed) {
+            if happens(faults.loss) || faults.cuts(from, to, *time, *seed) {
                 *lost += 1;
                 return Ok(());
             }
-            let (is_copied, is_late) = (happens(weather.copies), happens(weather.lateness));
+            let (is_copied, is_late) = (happens(faults.copies), happens(faults.lateness));
             if is_copied || is_late {
-                let wait = 1 + chance.below(weather.longest_delay.max(1) as usize) as u64;
+                let wait = 1 + chance.below(faults.longest_delay.max(1) as usize) as u64;
                 late.push(Late { due: now + wait, from, to, message: message.clone() });
             }
             if is_late { Ok(()) } else { hand_over(delivery) }
@@ -178,8 +178,8 @@ mod tests {
     use std::convert::Infallible;
 
     /// The numbers that each of three nodes hears when node 0 counts to `count`.
-    fn heard(weather: Weather, count: u32) -> [Vec<u32>; 3] {
-        let mut medium = Unreliable::new(FullMesh::new(), weather, 7);
+    fn heard(faults: MessageFaults, count: u32) -> [Vec<u32>; 3] {
+        let mut medium = Unreliable::new(FullMesh::new(), faults, 7);
         medium.update(&[(); 3]);
         let mut heard: [Vec<u32>; 3] = Default::default();
         for message in 0..count {
@@ -199,24 +199,24 @@ mod tests {
     #[test]
     fn a_calm_medium_loses_nothing() {
         let all: Vec<u32> = (0..50).collect();
-        assert_eq!(heard(Weather::default(), 50), [vec![], all.clone(), all]);
+        assert_eq!(heard(MessageFaults::default(), 50), [vec![], all.clone(), all]);
     }
 
     #[test]
     fn as_many_messages_are_lost_as_the_weather_says() {
-        let weather = Weather { loss: 0.3, ..Weather::default() };
-        let first = heard(weather.clone(), 2_000);
+        let faults = MessageFaults { loss: 0.3, ..MessageFaults::default() };
+        let first = heard(faults.clone(), 2_000);
         assert!((1_330..1_470).contains(&first[1].len()), "{}", first[1].len());
         assert_ne!(first[1], first[2], "each receiver has losses of its own");
-        assert_eq!(first, heard(weather, 2_000), "the same in every run");
+        assert_eq!(first, heard(faults, 2_000), "the same in every run");
     }
 
     #[test]
     fn late_messages_are_overtaken_and_copies_come_again() {
-        let late = Weather { lateness: 0.2, longest_delay: 3, ..Weather::default() };
+        let late = MessageFaults { lateness: 0.2, longest_delay: 3, ..MessageFaults::default() };
         let heard_late = heard(late, 500);
         assert!(!heard_late[1].is_sorted() && heard_late[1].len() > 490);
-        let copied = Weather { copies: 0.2, longest_delay: 3, ..Weather::default() };
+        let copied = MessageFaults { copies: 0.2, longest_delay: 3, ..MessageFaults::default() };
         let heard_copies = heard(copied, 500);
         assert!((560..640).contains(&heard_copies[1].len()), "{}", heard_copies[1].len());
     }
@@ -224,17 +224,19 @@ mod tests {
     #[test]
     fn a_partition_ends_and_a_wire_never_fails() {
         let partition = Partition { begin: 10.0, end: 20.0, side: vec![2] };
-        let heard_parted = heard(Weather { partitions: vec![partition], ..Weather::default() }, 30);
+        let heard_parted =
+            heard(MessageFaults { partitions: vec![partition], ..MessageFaults::default() }, 30);
         assert_eq!((heard_parted[1].len(), heard_parted[2].len()), (30, 20));
-        let all = Weather { loss: 1.0, begin: 5.0, end: Some(15.0), ..Weather::default() };
+        let all =
+            MessageFaults { loss: 1.0, begin: 5.0, end: Some(15.0), ..MessageFaults::default() };
         assert_eq!(heard(all.clone(), 30)[1].len(), 20);
-        assert_eq!(heard(Weather { wired_from: Some(0), ..all }, 30)[1].len(), 30);
+        assert_eq!(heard(MessageFaults { wired_from: Some(0), ..all }, 30)[1].len(), 30);
     }
 
     #[test]
     fn a_silent_link_is_silent_for_a_second_in_one_direction() {
-        let weather = Weather { silence: 0.5, ..Weather::default() };
-        let heard_some = heard(weather, 400);
+        let faults = MessageFaults { silence: 0.5, ..MessageFaults::default() };
+        let heard_some = heard(faults, 400);
         assert!((150..250).contains(&heard_some[1].len()));
         assert_ne!(heard_some[1], heard_some[2]);
     }

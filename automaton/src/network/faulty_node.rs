@@ -1,7 +1,7 @@
 //! Nodes that fail: they crash, restart, join late, and their positions and moves have errors.
 //!
-//! [`Frail`] wraps a [`Member`] of an ensemble. It has the true position of the body; the node knows
-//! what its localisation measures. The faults of a node are its [`Trouble`]. Draws are those of a seed.
+//! [`FaultyNode`] wraps a [`Member`] of an ensemble. It has the true position of the body; the node knows
+//! what its localisation measures. Its faults are [`NodeFaults`]. Draws are those of a seed.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::node::{Input, Node, Observed, Outputs};
 
 /// The faults of one node. Times are in seconds from the beginning.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trouble {
+pub struct NodeFaults {
     /// When it joins. Its body stands at its start from the beginning, and nobody knows of it.
     pub joins: Option<f64>,
     /// When it stops.
@@ -46,10 +46,10 @@ pub type Maker = Arc<dyn Fn(Point) -> Member + Send + Sync>;
 
 /// A node with its faults.
 #[derive(Clone)]
-pub struct Frail {
+pub struct FaultyNode {
     member: Member,
     maker: Maker,
-    trouble: Trouble,
+    faults: NodeFaults,
     chance: Chance,
     state: State,
     has_begun: bool,
@@ -71,9 +71,9 @@ enum State {
     Gone,
 }
 
-impl std::fmt::Debug for Frail {
+impl std::fmt::Debug for FaultyNode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Frail")
+        f.debug_struct("FaultyNode")
             .field("member", &self.member)
             .field("state", &self.state)
             .field("place", &self.true_position)
@@ -84,12 +84,12 @@ impl std::fmt::Debug for Frail {
 /// Times closer than this share of a control period are the same.
 const SAME: f64 = 1e-9;
 
-impl Frail {
+impl FaultyNode {
     /// The node that `maker` makes at `place`, with its faults; control periods take `period`
     /// seconds, and `seed` decides on errors.
-    pub fn new(maker: Maker, place: Point, period: f64, trouble: Trouble, seed: u64) -> Self {
-        let begin = trouble.joins.map(|time| on_grid(time, period)).unwrap_or(0.0) + trouble.shift;
-        Frail {
+    pub fn new(maker: Maker, place: Point, period: f64, faults: NodeFaults, seed: u64) -> Self {
+        let begin = faults.joins.map(|time| on_grid(time, period)).unwrap_or(0.0) + faults.shift;
+        FaultyNode {
             member: maker(place),
             maker,
             chance: Chance::new(seed, 0),
@@ -100,7 +100,7 @@ impl Frail {
             period,
             inputs: 0,
             disturbance: None,
-            trouble,
+            faults,
         }
     }
 
@@ -125,14 +125,14 @@ impl Frail {
 
     /// Stops the node if the time of its crash has come.
     fn crash_if_due(&mut self) {
-        let Some(crash) = self.trouble.crash.filter(|crash| self.is_at(crash.time)) else { return };
+        let Some(crash) = self.faults.crash.filter(|crash| self.is_at(crash.time)) else { return };
         if self.state != State::Running || self.inputs < crash.inputs {
             self.inputs += 1;
             return;
         }
-        self.trouble.crash = None;
+        self.faults.crash = None;
         self.state = match crash.back {
-            Some(back) => State::Waiting(on_grid(back, self.period) + self.trouble.shift),
+            Some(back) => State::Waiting(on_grid(back, self.period) + self.faults.shift),
             None => State::Gone,
         };
     }
@@ -144,7 +144,7 @@ impl Frail {
     }
 
     fn is_exact(&self) -> bool {
-        self.trouble.position_error == 0.0 && self.trouble.motion_error == 0.0
+        self.faults.position_error == 0.0 && self.faults.motion_error == 0.0
     }
 
     /// Somewhere in a disc of this radius.
@@ -162,7 +162,7 @@ impl Frail {
             return None;
         }
         self.disturbance = None;
-        let error = self.somewhere(self.trouble.position_error);
+        let error = self.somewhere(self.faults.position_error);
         Some(self.true_position + error)
     }
 }
@@ -172,7 +172,7 @@ fn on_grid(time: f64, period: f64) -> f64 {
     (time / period - SAME).ceil().max(0.0) * period
 }
 
-impl Node for Frail {
+impl Node for FaultyNode {
     type Message = Message;
     type Sense = Sense;
     type Report = MissionEvent;
@@ -225,7 +225,7 @@ impl Node for Frail {
             self.true_position = after;
         } else if before != after {
             if self.disturbance.is_none() {
-                self.disturbance = Some(self.somewhere(self.trouble.motion_error));
+                self.disturbance = Some(self.somewhere(self.faults.motion_error));
             }
             let share = (duration / self.period).min(1.0);
             self.true_position +=

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// A node with what its process keeps of it.
 #[derive(Debug)]
-pub struct Seat {
+pub struct LocalNode {
     /// Its number.
     pub id: NodeId,
     member: Member,
@@ -32,14 +32,14 @@ pub struct Seat {
 
 /// The nodes of a process, ascending.
 #[derive(Debug)]
-pub struct Crew {
-    seats: Vec<Seat>,
+pub struct LocalNodes {
+    nodes: Vec<LocalNode>,
 }
 
-impl Seat {
+impl LocalNode {
     fn of(id: NodeId, member: Member) -> Self {
         let (outputs, traffic) = (Outputs::of(id), Traffic::default());
-        Seat { id, member, outputs, traffic, sent: Sent::default(), ticked: 0, ticks: None }
+        LocalNode { id, member, outputs, traffic, sent: Sent::default(), ticked: 0, ticks: None }
     }
 
     fn ask(&mut self) {
@@ -70,7 +70,7 @@ impl Seat {
         let sent = self.outputs.sent();
         let asks = sent.iter().any(|envelope| envelope.message.may_be_answered_at_once());
         self.traffic.sent += sent.len() as u64;
-        let Seat { outputs, sent, .. } = self;
+        let LocalNode { outputs, sent, .. } = self;
         let letters =
             outputs.drain_sent().map(|envelope| sent.letter(envelope.to, &envelope.message));
         Ok((letters.collect::<Result<_, _>>()?, asks))
@@ -104,12 +104,12 @@ impl Seat {
     }
 }
 
-impl Crew {
+impl LocalNodes {
     /// A robot of a scenario, which stands at `position`.
     pub fn robot(scenario: &ValidScenario, id: NodeId, position: Point) -> Self {
         let rate = scenario.robot[id].rate;
         let robot = Robot::new(id, position, rate, Arc::clone(scenario.site()));
-        Crew { seats: vec![Seat::of(id, Member::Robot(Box::new(robot)))] }
+        LocalNodes { nodes: vec![LocalNode::of(id, Member::Robot(Box::new(robot)))] }
     }
 
     /// Access points of a scenario; the user, who asks for its tasks, is with the first of them.
@@ -121,37 +121,40 @@ impl Crew {
         numbers: impl IntoIterator<Item = usize>,
     ) -> Result<Self, RobotError> {
         let site = scenario.site();
-        let mut seats = Vec::new();
+        let mut nodes = Vec::new();
         let mut has_user = false;
         for number in numbers {
             let access_point = AccessPoint::new(number, Arc::clone(site));
-            seats.push(Seat::of(site.robots + number, Member::AccessPoint(Box::new(access_point))));
+            nodes.push(LocalNode::of(
+                site.robots + number,
+                Member::AccessPoint(Box::new(access_point)),
+            ));
             has_user |= number == 0;
         }
         if has_user {
             let user = Member::User(Box::new(User::new(Arc::clone(site))));
-            let mut seat = Seat::of(site.nodes(), user);
-            seat.step(Input::Sensed(Sense::Tasks(Arc::from(&*scenario.task))))?;
-            seats.push(seat);
+            let mut node = LocalNode::of(site.nodes(), user);
+            node.step(Input::Sensed(Sense::Tasks(Arc::from(&*scenario.task))))?;
+            nodes.push(node);
         }
-        Ok(Crew { seats })
+        Ok(LocalNodes { nodes })
     }
 
     /// The numbers of the nodes, ascending.
     pub fn ids(&self) -> Vec<NodeId> {
-        self.seats.iter().map(|seat| seat.id).collect()
+        self.nodes.iter().map(|node| node.id).collect()
     }
 
     /// The nodes.
-    pub fn seats_mut(&mut self) -> &mut [Seat] {
-        &mut self.seats
+    pub fn nodes_mut(&mut self) -> &mut [LocalNode] {
+        &mut self.nodes
     }
 
     /// A control period begins.
     pub fn begin_period(&mut self) {
-        for seat in &mut self.seats {
-            (seat.ticked, seat.traffic) = (0, Traffic::default());
-            seat.ask();
+        for node in &mut self.nodes {
+            (node.ticked, node.traffic) = (0, Traffic::default());
+            node.ask();
         }
     }
 
@@ -160,12 +163,12 @@ impl Crew {
     /// # Errors
     /// Why a node cannot go on.
     pub fn tick(&mut self, round: u32) -> Result<(), RobotError> {
-        for seat in &mut self.seats {
-            if seat.ticks.is_some_and(|ticks| ticks <= round) {
-                let passed = (round - seat.ticked).saturating_sub(1) as usize;
-                seat.step(Input::Tick { passed })?;
-                seat.ticked = round;
-                seat.ask();
+        for node in &mut self.nodes {
+            if node.ticks.is_some_and(|ticks| ticks <= round) {
+                let passed = (round - node.ticked).saturating_sub(1) as usize;
+                node.step(Input::Tick { passed })?;
+                node.ticked = round;
+                node.ask();
             }
         }
         Ok(())
@@ -177,12 +180,12 @@ impl Crew {
     /// Why a node cannot go on.
     pub fn hear(&mut self, messages: &[(NodeId, NodeId, Message)]) -> Result<(), RobotError> {
         for (from, to, message) in messages {
-            if let Some(seat) = self.seats.iter_mut().find(|seat| seat.id == *to) {
-                seat.traffic.heard += 1;
-                seat.step(Input::Heard { from: *from, message })?;
+            if let Some(node) = self.nodes.iter_mut().find(|node| node.id == *to) {
+                node.traffic.heard += 1;
+                node.step(Input::Heard { from: *from, message })?;
             }
         }
-        self.seats.iter_mut().for_each(Seat::ask);
+        self.nodes.iter_mut().for_each(LocalNode::ask);
         Ok(())
     }
 
@@ -191,12 +194,12 @@ impl Crew {
     /// # Errors
     /// What must hold while time passes, and does not.
     pub fn flow(&mut self) -> Result<f64, RobotError> {
-        let waits = self.seats.iter().filter_map(|seat| seat.member.time_to_tick());
+        let waits = self.nodes.iter().filter_map(|node| node.member.time_to_tick());
         let duration = waits.reduce(f64::min).unwrap_or(0.0);
         if duration > 0.0 {
-            for seat in &mut self.seats {
-                seat.member.flow(duration);
-                seat.member.check_invariant()?;
+            for node in &mut self.nodes {
+                node.member.flow(duration);
+                node.member.check_invariant()?;
             }
         }
         Ok(duration)

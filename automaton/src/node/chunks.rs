@@ -1,28 +1,28 @@
-//! The nodes of an ensemble in rows, which take their steps of a round at once.
+//! The nodes of an ensemble, which take their steps of a round in chunks, on several threads.
 
 use std::fmt::{self, Debug, Formatter};
 
 use super::{Delivery, Input, Mail, Medium, Node, NodeId, Outputs, Traffic};
-use crate::abreast::{abreast, threads};
+use crate::parallel::{for_each, threads};
 
 /// With fewer steps in a round, one thread is as fast as several.
 const FEWEST_STEPS_FOR_THREADS: usize = 2_000;
-/// The number of rows for each thread. With several, no thread waits long for another.
-const ROWS_PER_THREAD: usize = 4;
+/// The number of chunks for each thread. With several, no thread waits long for another.
+const CHUNKS_PER_THREAD: usize = 4;
 
 /// Nodes, with what the ensemble keeps of each.
-pub(super) struct Rows<N: Node> {
+pub(super) struct Chunks<N: Node> {
     pub nodes: Vec<N>,
-    pub seats: Vec<Seat>,
+    pub slots: Vec<Slot>,
     /// How many threads may take steps.
     pub threads: usize,
-    /// What is left by the steps of each row; the first also has what single nodes leave, and all reports.
-    left: Vec<Leavings<N>>,
+    /// What is left by the steps of each chunk; the first also has what single nodes leave, and all reports.
+    outcomes: Vec<Outcome<N>>,
 }
 
 /// What the ensemble keeps of a node.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seat {
+pub(super) struct Slot {
     pub traffic: Traffic,
     /// The number of the delivery in which it has heard something last; 0 if in none.
     pub heard: usize,
@@ -40,24 +40,24 @@ pub(super) struct Steps<'a, M> {
     pub round: usize,
 }
 
-/// What the nodes of a row leave when they have taken their steps.
-struct Leavings<N: Node> {
+/// What the nodes of a chunk leave when they have taken their steps.
+struct Outcome<N: Node> {
     outputs: Outputs<N::Message, N::Report>,
     result: Result<(), N::Error>,
 }
 
-impl<N: Node> Leavings<N> {
+impl<N: Node> Outcome<N> {
     const fn nothing() -> Self {
-        Leavings { outputs: Outputs::of(0), result: Ok(()) }
+        Outcome { outputs: Outputs::of(0), result: Ok(()) }
     }
 }
 
-impl<N: Node> Rows<N> {
+impl<N: Node> Chunks<N> {
     /// These nodes, numbered from 0.
     pub fn new(nodes: Vec<N>) -> Self {
-        let mut seats = vec![Seat::default(); nodes.len()];
-        seats.iter_mut().zip(&nodes).for_each(|(seat, node)| seat.ask(node));
-        Rows { nodes, seats, threads: threads(), left: vec![Leavings::nothing()] }
+        let mut slots = vec![Slot::default(); nodes.len()];
+        slots.iter_mut().zip(&nodes).for_each(|(slot, node)| slot.ask(node));
+        Chunks { nodes, slots, threads: threads(), outcomes: vec![Outcome::nothing()] }
     }
 
     /// Nodes that have mail hear it, and those that are due in this round then tick.
@@ -67,18 +67,18 @@ impl<N: Node> Rows<N> {
     /// That of the first node that cannot go on.
     pub fn take(&mut self, steps: &Steps<'_, N::Message>) -> Result<(), N::Error> {
         let is_short = self.threads == 1 || self.count(steps) < FEWEST_STEPS_FOR_THREADS;
-        let (threads, rows) =
-            if is_short { (1, 1) } else { (self.threads, self.threads * ROWS_PER_THREAD) };
-        let length = self.nodes.len().div_ceil(rows).max(1);
-        let Rows { nodes, seats, left, .. } = self;
-        left.resize_with(rows.max(left.len()), Leavings::nothing);
-        let rows = nodes.chunks_mut(length).zip(seats.chunks_mut(length)).zip(&mut *left);
-        abreast(threads, rows.enumerate(), |(row, ((nodes, seats), left))| {
-            left.result = steps.take_in_turn(row * length, nodes, seats, &mut left.outputs);
+        let (threads, chunks) =
+            if is_short { (1, 1) } else { (self.threads, self.threads * CHUNKS_PER_THREAD) };
+        let length = self.nodes.len().div_ceil(chunks).max(1);
+        let Chunks { nodes, slots, outcomes, .. } = self;
+        outcomes.resize_with(chunks.max(outcomes.len()), Outcome::nothing);
+        let chunks = nodes.chunks_mut(length).zip(slots.chunks_mut(length)).zip(&mut *outcomes);
+        for_each(threads, chunks.enumerate(), |(chunk, ((nodes, slots), outcome))| {
+            outcome.result = steps.take_in_turn(chunk * length, nodes, slots, &mut outcome.outputs);
         });
-        let [first, others @ ..] = &mut left[..] else { return Ok(()) };
-        others.iter_mut().for_each(|row| first.outputs.append_reports(&mut row.outputs));
-        left.iter_mut().try_for_each(|row| std::mem::replace(&mut row.result, Ok(())))
+        let [first, others @ ..] = &mut outcomes[..] else { return Ok(()) };
+        others.iter_mut().for_each(|other| first.outputs.append_reports(&mut other.outputs));
+        outcomes.iter_mut().try_for_each(|outcome| std::mem::replace(&mut outcome.result, Ok(())))
     }
 
     /// Lets time pass.
@@ -87,10 +87,10 @@ impl<N: Node> Rows<N> {
     ///
     /// That of the first node whose invariant does not hold afterwards.
     pub fn flow(&mut self, duration: f64) -> Result<(), N::Error> {
-        self.nodes.iter_mut().zip(&mut self.seats).try_for_each(|(node, seat)| {
+        self.nodes.iter_mut().zip(&mut self.slots).try_for_each(|(node, slot)| {
             node.flow(duration);
-            seat.ticked = 0;
-            seat.ask(node);
+            slot.ticked = 0;
+            slot.ask(node);
             node.check_invariant()
         })
     }
@@ -99,7 +99,7 @@ impl<N: Node> Rows<N> {
     fn count(&self, steps: &Steps<'_, N::Message>) -> usize {
         match steps.mail {
             Some((mail, _)) => mail.len(),
-            None => self.seats.iter().filter(|seat| seat.is_due_in(steps.round)).count(),
+            None => self.slots.iter().filter(|slot| slot.is_due_in(steps.round)).count(),
         }
     }
 
@@ -109,10 +109,10 @@ impl<N: Node> Rows<N> {
     ///
     /// That of the node.
     pub fn sense(&mut self, id: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
-        let Rows { nodes, seats, left, .. } = self;
-        let Some((node, seat)) = nodes.get_mut(id).zip(seats.get_mut(id)) else { return Ok(()) };
-        seat.step(node, Input::Sensed(sensed), left[0].outputs.now_of(id))?;
-        seat.ask(node);
+        let Chunks { nodes, slots, outcomes, .. } = self;
+        let Some((node, slot)) = nodes.get_mut(id).zip(slots.get_mut(id)) else { return Ok(()) };
+        slot.step(node, Input::Sensed(sensed), outcomes[0].outputs.now_of(id))?;
+        slot.ask(node);
         Ok(())
     }
 
@@ -126,60 +126,60 @@ impl<N: Node> Rows<N> {
         delivery: Delivery<'_, N::Message>,
         number: usize,
     ) -> Result<(), N::Error> {
-        let Rows { nodes, seats, left, .. } = self;
+        let Chunks { nodes, slots, outcomes, .. } = self;
         let Delivery { from, to, message } = delivery;
-        let Some((node, seat)) = nodes.get_mut(to).zip(seats.get_mut(to)) else { return Ok(()) };
-        seat.hear(number, 1);
-        seat.step(node, Input::Heard { from, message }, left[0].outputs.now_of(to))?;
-        seat.ask(node);
+        let Some((node, slot)) = nodes.get_mut(to).zip(slots.get_mut(to)) else { return Ok(()) };
+        slot.hear(number, 1);
+        slot.step(node, Input::Heard { from, message }, outcomes[0].outputs.now_of(to))?;
+        slot.ask(node);
         Ok(())
     }
 
     /// Gives the medium what the nodes have sent, in their order.
     pub fn send<B>(&mut self, medium: &mut impl Medium<N::Message, B>) {
-        self.left.iter_mut().for_each(|left| medium.send_all(left.outputs.sent_mut()));
+        self.outcomes.iter_mut().for_each(|outcome| medium.send_all(outcome.outputs.sent_mut()));
     }
 
     /// What the nodes have told observers since the last call, in its order.
     pub fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, N::Report)> {
-        self.left[0].outputs.drain_reports()
+        self.outcomes[0].outputs.drain_reports()
     }
 }
 
-impl<N: Node + Debug> Debug for Rows<N> {
+impl<N: Node + Debug> Debug for Chunks<N> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Rows { nodes, seats, .. } = self;
-        f.debug_struct("Rows").field("nodes", nodes).field("seats", seats).finish_non_exhaustive()
+        let Chunks { nodes, slots, .. } = self;
+        f.debug_struct("Chunks").field("nodes", nodes).field("slots", slots).finish_non_exhaustive()
     }
 }
 
 impl<M> Steps<'_, M> {
-    /// The steps of the nodes in a row, of which the first has this number.
+    /// The steps of the nodes in a chunk, of which the first has this number.
     fn take_in_turn<N: Node<Message = M>>(
         &self,
         first: NodeId,
         nodes: &mut [N],
-        seats: &mut [Seat],
+        slots: &mut [Slot],
         outputs: &mut Outputs<M, N::Report>,
     ) -> Result<(), N::Error> {
-        for (id, (node, seat)) in (first..).zip(nodes.iter_mut().zip(seats)) {
+        for (id, (node, slot)) in (first..).zip(nodes.iter_mut().zip(slots)) {
             let heard = self.mail.map(|(mail, number)| (mail.of(id), number));
             if let Some((mut mail, number)) = heard.filter(|(mail, _)| mail.len() > 0) {
-                seat.hear(number, mail.len());
+                slot.hear(number, mail.len());
                 mail.try_for_each(|Delivery { from, message, .. }| {
-                    seat.step(node, Input::Heard { from, message }, outputs.now_of(id))
+                    slot.step(node, Input::Heard { from, message }, outputs.now_of(id))
                 })?;
-                seat.ask(node);
+                slot.ask(node);
             }
-            if seat.is_due_in(self.round) {
-                seat.tick(node, self.round, outputs.now_of(id))?;
+            if slot.is_due_in(self.round) {
+                slot.tick(node, self.round, outputs.now_of(id))?;
             }
         }
         Ok(())
     }
 }
 
-impl Seat {
+impl Slot {
     /// The node takes a step; what it sends is counted.
     #[inline]
     fn step<N: Node>(
