@@ -108,7 +108,8 @@ pub type Bulletin = bulletin::Bulletin<Shared<Notice>>;
 pub struct TeamReport {
     /// Control periods since any member moved, as far forward as the leader.
     pub still: u32,
-    /// A member whose link is slack although it cannot move.
+    /// A member whose link is slack although it cannot move, or the leader if it is near enough to its task where it
+    /// is.
     pub slack: Option<NodeId>,
     /// A member whose links carry no more.
     pub saturated: Option<NodeId>,

@@ -103,7 +103,7 @@ facts! {
         announcement_heard,
         /// This robot is p₁.
         first,
-        /// A member of the team has room to move.
+        /// A member of the team has room to move, or the leader is near enough where it is.
         slack,
         /// p₁ is still on its way to the robot that it joined.
         pending,

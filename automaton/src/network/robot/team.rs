@@ -6,7 +6,7 @@ use pleach_continuous::geometry::Disc;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Anchor, NodeId, Phase, Post, PostId, PostKind};
 
-use super::super::beacon::{Notice, TeamReport};
+use super::super::beacon::{Announcement, Notice, TeamReport};
 use super::super::duty::Hop;
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
@@ -228,7 +228,7 @@ impl Robot {
         if self.phase() != Phase::Advance || !self.duty.is_primary() {
             return;
         }
-        let own_slack = self.is_slack().then_some(self.id);
+        let own_slack = (self.is_slack() || self.is_near_enough()).then_some(self.id);
         let own_saturated = self.is_saturated().then_some(self.id);
         let still = self.still_periods;
         let near_other_tree = self.is_eager() && self.node_of_other_tree().is_some();
@@ -290,6 +290,15 @@ impl Robot {
                 .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
         };
         !bound && !self.is_saturated() && (self.leads() || !bunched())
+    }
+
+    /// Whether it leads and can service its task from where it is, although another robot beside it could not: where
+    /// none is left that could come, nobody has to.
+    fn is_near_enough(&self) -> bool {
+        let within = |announcement: &Announcement| {
+            (announcement.position - self.position).norm() <= self.site.settings.arrival_radius()
+        };
+        self.leads() && self.stretched && self.announcement().is_some_and(within)
     }
 
     /// Whether the links of the robot carry no more, so that it stops where h_i ≤ 1 would break: a recruit makes them
