@@ -79,7 +79,7 @@ impl Numbers for FlowRequest {
 
 impl Numbers for FlowGrant {
     fn not_finite(&self) -> Option<f64> {
-        self.flow.not_finite()
+        self.flow.not_finite().or(self.part.and_then(|part| part.flow.not_finite()))
     }
 }
 

@@ -49,8 +49,8 @@ where
 
 /// What may be used of a flow, and until when: all of it for a while, and a part of it for longer.
 ///
-/// The receiver of a flow keeps it, the sender uses it. The receiver enters a promise before it tells it, the sender
-/// enters what it hears: so in no control period may the sender use more than the receiver keeps.
+/// The receiver of a flow keeps it, the sender uses it. The receiver enters a promise before it tells what it keeps, the
+/// sender takes over what it hears: so in no control period may the sender use more than the receiver keeps.
 ///
 /// ```
 /// use pleach_discrete::network::reservation::Lease;
@@ -124,6 +124,15 @@ where
         };
         self.join_parts();
         true
+    }
+
+    /// The receiver tells the sender that it keeps this. What is told late is less than what the sender knows, and
+    /// changes nothing.
+    pub fn hear(&mut self, kept: Self) {
+        let covers = |end: u32| kept.lasting(end) >= self.lasting(end);
+        if covers(self.until) && covers(self.end()) {
+            *self = kept;
+        }
     }
 
     /// No more than this holds from now on.

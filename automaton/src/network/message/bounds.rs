@@ -11,7 +11,7 @@ use super::super::duty::{Duty, Hop};
 use super::super::roll::Roll;
 use super::super::scenario::MOST_PERIODS;
 use super::super::site::Site;
-use super::Message;
+use super::{FlowGrant, Message};
 
 /// Tasks have numbers below this.
 const MOST_TASKS: usize = 1 << 16;
@@ -51,7 +51,12 @@ impl Bounds {
             }
             Message::Objection { period } | Message::Consent { period } => is_period(*period),
             Message::AskFlow(request) => is_period(request.number.period),
-            Message::GrantFlow(grant) => is_period(grant.number.period) && is_period(grant.until),
+            Message::GrantFlow(grant) => {
+                let FlowGrant { number, until, part, .. } = grant;
+                is_period(number.period)
+                    && is_period(*until)
+                    && part.is_none_or(|part| is_period(part.until))
+            }
             Message::Request(order) => order.tasks.len() <= MOST_TASKS,
             Message::News(bulletin) => self.has_bulletin(bulletin.id(), bulletin.notice()),
             Message::Flow(_) | Message::Demand(_) | Message::Shortage => true,

@@ -17,7 +17,7 @@ use super::super::duty::{
 };
 use super::super::order::Errand;
 use super::super::record::Outcome;
-use super::super::robot::RequestNumber;
+use super::super::robot::{GrantedPart, RequestNumber};
 use super::super::roll::{Absent, Wreck};
 use super::super::shared::Shared;
 use super::bounds::Bounds;
@@ -160,6 +160,7 @@ fn messages() -> Vec<Message> {
         Errand { position: Point::new(1.33, 1.42), lasts: None, withdrawn: true },
         Errand { position: Point::new(1.6, 0.52), lasts: Some(90), withdrawn: false },
     ];
+    let part = GrantedPart { flow: 0.025, until: 15 };
     let mut messages = vec![
         beacon(silent()),
         Message::Multiplier { report, parent: None },
@@ -168,7 +169,8 @@ fn messages() -> Vec<Message> {
         Message::Demand(f64::MIN_POSITIVE),
         Message::Shortage,
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
-        Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12 }),
+        Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12, part: None }),
+        Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12, part: Some(part) }),
         Message::Proposal { period: 5, segment, witness: Some(2) },
         Message::Objection { period: 5 },
         Message::Consent { period: 5 },

@@ -66,7 +66,7 @@ pub use facts::{Facts, GLOSSARY};
 pub use lineage::{AttachmentAutomaton, PlaceInTree, attachment_automaton};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
-pub use reservation::{FlowGrant, FlowRequest, RequestNumber};
+pub use reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
 pub use routing::RouteLink;
 pub use step::{RobotError, RobotFault};
 pub use target::{Targets, targets};

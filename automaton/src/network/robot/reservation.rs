@@ -11,8 +11,8 @@
 //! ```
 //!
 //! holds from the first period in which it does, as long as grants are renewed: a message that is lost
-//! leaves flows as they are until a lease ends. A request is answered by a grant, or by two, of all and of a part;
-//! a new request voids the grants before it, so that late messages and copies change nothing.
+//! leaves flows as they are until a lease ends. A request is answered by a grant, which tells all that is kept for the
+//! sender; a new request voids the grants before it, so that late messages and copies change nothing.
 //!
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
 //! where grants are not renewed, flows end at those who send first. If c_i ≥ 0 now,
@@ -74,7 +74,8 @@ pub struct FlowRequest {
     pub wanted: f64,
 }
 
-/// An answer to a request for a flow. Grants that answer the same request hold beside each other.
+/// An answer to a request for a flow: all that the receiver of the flow keeps for its sender. Of grants that answer the
+/// same request later ones tell as much or more.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FlowGrant {
@@ -83,6 +84,18 @@ pub struct FlowGrant {
     /// The F_ij that the sender may use.
     pub flow: f64,
     /// The last control period in which it may use that much.
+    pub until: u32,
+    /// The part of it that it may use for longer.
+    pub part: Option<GrantedPart>,
+}
+
+/// The part of a granted flow that may be used for longer than all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GrantedPart {
+    /// The part of F_ij.
+    pub flow: f64,
+    /// The last control period in which it may be used.
     pub until: u32,
 }
 
@@ -121,6 +134,22 @@ pub(super) struct Reservation {
 }
 
 type Out = Outputs<Message, MissionEvent>;
+
+impl FlowGrant {
+    /// What is kept as the request with this number is answered.
+    fn of(number: RequestNumber, lease: &Lease<f64>) -> Self {
+        let part = lease.part().map(|(flow, until)| GrantedPart { flow, until });
+        FlowGrant { number, flow: lease.flow(), until: lease.until(), part }
+    }
+
+    fn lease(&self) -> Lease<f64> {
+        let mut lease = Lease::of(self.flow, self.until);
+        if let Some(GrantedPart { flow, until }) = self.part {
+            lease.promise(flow, until);
+        }
+        lease
+    }
+}
 
 impl Reservation {
     /// Whether its request waits for an answer, or for more than has been granted.
@@ -359,9 +388,10 @@ impl Robot {
         let held = &mut self.flows[at];
         if held.asked == grant.number {
             held.is_open = false;
-            held.lease.promise(grant.flow, grant.until);
+            let mut kept = grant.lease();
             // It may have ended on its way.
-            held.lease.pass(self.period);
+            kept.pass(self.period);
+            held.lease.hear(kept);
             self.has_flow_news = true;
         }
     }
@@ -444,11 +474,8 @@ impl Robot {
                 if let Some((flow, longer)) = part {
                     lease.promise(flow, longer);
                 }
-                let told = lease.part().filter(|told| part == Some(*told));
-                for (flow, until) in std::iter::once((lease.flow(), lease.until())).chain(told) {
-                    let grant = FlowGrant { number: kept.asked, flow, until };
-                    outputs.send(kept.from, Message::GrantFlow(grant));
-                }
+                let grant = FlowGrant::of(kept.asked, lease);
+                outputs.send(kept.from, Message::GrantFlow(grant));
             }
         }
     }

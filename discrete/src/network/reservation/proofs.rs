@@ -33,35 +33,39 @@ fn no_more_is_granted_than_there_is_to_spare() {
 }
 
 /// A receiver that keeps any flow below 3 until any period below 3, and promises two more, each until any period below
-/// 4: it keeps what it did and what it tells, or nothing changes and it tells nothing. The sender hears three of what
-/// it is told, in any order, some of it again: in any period it may use no more than the receiver keeps.
+/// 4: it keeps what it did and what it promises, or nothing changes. Each time it tells what it keeps. The sender hears
+/// three of these tellings, in any order, some of them again: in any period it may use no more than the receiver
+/// keeps, and as much if it has heard the last one.
 #[kani::proof]
 #[kani::unwind(4)]
 fn a_lease_ends_at_the_sender_first() {
     let any_period = |bound: u8| u32::from(kani::any_where(|period: &u8| *period < bound));
     let period = any_period(5);
-    let mut told = [(below(3), any_period(3)); 3];
-    let mut kept = Lease::of(told[0].0, told[0].1);
-    for grant in &mut told[1..] {
+    let mut kept = Lease::of(below(3), any_period(3));
+    let mut told = [kept; 3];
+    for telling in &mut told[1..] {
         let (flow, until) = (below(3), any_period(4));
         let before = kept;
         if kept.promise(flow, until) {
             let more = if period <= until { flow } else { 0 };
             assert!(kept.lasting(period) == before.lasting(period).max(more));
-            *grant = (flow, until);
         } else {
             assert!(kept == before);
         }
+        *telling = kept;
     }
     let mut used = Lease::of(0, 0);
+    let mut knows_all = false;
     for _ in 0..3 {
         let heard = any_period(3);
-        for (at, &(flow, until)) in told.iter().enumerate() {
-            if at == heard as usize {
-                used.promise(flow, until);
+        for (at, telling) in (0..3).zip(&told) {
+            if at == heard {
+                used.hear(*telling);
             }
         }
+        knows_all |= heard == 2;
     }
+    assert!(!knows_all || used.lasting(period) == kept.lasting(period));
     kani::cover!(used.lasting(period) > 0 && used.lasting(period) < kept.lasting(period));
     kani::cover!(used.part().is_some() && used.lasting(period) == kept.lasting(period));
     assert!(used.lasting(period) <= kept.lasting(period));

@@ -184,8 +184,7 @@ impl View {
         let grants = grants.iter().all(|grant| {
             grant.number != self.asked
                 || grant.number != self.known
-                || grant.until < self.period
-                || grant.flow <= self.kept.lasting(grant.until) + LITTLE
+                || is_kept(&grant.lease(), &self.kept, self.period)
         });
         let mut periods = self.periods(self);
         self.held <= self.granted.flow() + LITTLE
@@ -210,9 +209,7 @@ impl View {
 
     /// The receiver keeps as much or more, tells what it keeps, and has that to spare.
     fn receiver_steps(&self, after: &View, granted: &[FlowGrant]) -> bool {
-        let tells = |grant: &FlowGrant| {
-            grant.number == after.known && grant.flow <= after.kept.lasting(grant.until)
-        };
+        let tells = |grant: &FlowGrant| grant.number == after.known && grant.lease() == after.kept;
         let mut kept =
             after.periods(self).map(|at| (self.kept.lasting(at), after.kept.lasting(at)));
         let is_kept = match granted {
@@ -233,6 +230,12 @@ impl View {
         let receiver = |view: &View| (view.kept, view.known);
         receiver(self) == receiver(other)
     }
+}
+
+/// Whether a lease holds no more than another one, from this control period on.
+fn is_kept(lease: &Lease<f64>, kept: &Lease<f64>, first: u32) -> bool {
+    let ahead = ends(lease).into_iter().filter(|&end| end >= first);
+    ahead.into_iter().all(|end| lease.lasting(end) <= kept.lasting(end) + LITTLE)
 }
 
 /// Whether a step is one of the lemma.
@@ -259,7 +262,7 @@ fn is_step(link: &Link, step: Step, next: &Link) -> bool {
         Step::HearGrant(at) => {
             let grant = link.grants[at];
             let counts = grant.number == before.asked;
-            let heard = |period| if counts && period <= grant.until { grant.flow } else { 0.0 };
+            let heard = |period| if counts { grant.lease().lasting(period) } else { 0.0 };
             let is_heard = after.periods(&before).all(|at| {
                 let granted = before.granted.lasting(at);
                 (granted..=granted.max(heard(at))).contains(&after.granted.lasting(at))

@@ -5,7 +5,7 @@ use pleach_discrete::network::reservation::Lease;
 
 use super::super::super::message::Message;
 use super::super::MissionEvent;
-use super::super::reservation::{FlowGrant, FlowRequest, RequestNumber};
+use super::super::reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
 use super::*;
 use crate::node::{Destination, Outputs};
 
@@ -89,8 +89,10 @@ fn a_flow_is_raised_to_what_is_planned_and_granted() {
         robot.ask_for_flows(&mut outputs);
         let asked = requests(&mut outputs);
         let [(Destination::One(5), request)] = asked[..] else { panic!("{asked:?}") };
-        robot
-            .hear_grant(5, FlowGrant { number: request.number, flow: granted, until: NOW + LEASE });
+        robot.hear_grant(
+            5,
+            FlowGrant { number: request.number, flow: granted, until: NOW + LEASE, part: None },
+        );
         robot.take_in_requests(&mut outputs);
         (robot.held_flow(5).flow, robot.held_flow(ROBOTS).load())
     };
@@ -115,7 +117,7 @@ fn no_flow_is_raised_while_a_receiver_may_have_moved() {
         robot.ask_for_flows(&mut outputs);
         let number = requests(&mut outputs)[0].1.number;
         let flow = robot.links[0].reliability;
-        robot.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE });
+        robot.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE, part: None });
         robot.take_in_requests(&mut outputs);
         sent(&mut outputs);
         if consents {
@@ -204,7 +206,7 @@ fn grants_end_with_their_lease() {
         assert_eq!(robot.senders().count(), senders, "in {period} of {until}");
     }
     let (mut sender, FlowRequest { number, wanted: flow, .. }) = asking();
-    sender.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE });
+    sender.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE, part: None });
     sender.take_in_requests(&mut outputs);
     assert!(sender.sends_to(5) && sender.requests_are_answered());
     for (later, sends) in [(LEASE, true), (LEASE + 1, false)] {
@@ -259,17 +261,19 @@ fn what_is_sent_back_carries_no_part_that_is_granted_for_longer() {
         robot.reservations[0].lease = Lease::of(0.05, NOW + 3);
         robot.take_in_requests(&mut outputs);
         let grants = grants(&mut outputs).into_iter();
-        let grants = grants.map(|(to, it)| (to, (it.flow * 100.0).round() / 100.0, it.until - NOW));
-        grants.collect::<Vec<_>>()
+        let rounded = |flow: f64| (flow * 100.0).round() / 100.0;
+        let part = |it: FlowGrant| it.part.map(|part| (rounded(part.flow), part.until - NOW));
+        grants.map(|(to, it)| (to, rounded(it.flow), it.until - NOW, part(it))).collect::<Vec<_>>()
     };
     let lease = router().lease();
     let (four, five) = (Destination::One(4), Destination::One(5));
     // Rate 0.1, 0.05 more than goes back, and 0.05.
-    assert_eq!(told(0.2), [(four, 0.05, lease), (five, 0.15, 3), (five, 0.05, lease)]);
-    assert_eq!(told(0.19), [(four, 0.05, 3), (five, 0.15, 3)]);
+    let part = Some((0.05, lease));
+    assert_eq!(told(0.2), [(four, 0.05, lease, None), (five, 0.15, 3, part)]);
+    assert_eq!(told(0.19), [(four, 0.05, 3, None), (five, 0.15, 3, None)]);
     assert_eq!(
         told(0.3),
-        [(four, 0.05, lease), (five, 0.15, lease)],
+        [(four, 0.05, lease, None), (five, 0.15, lease, None)],
         "what goes back is not needed"
     );
 }
@@ -280,9 +284,9 @@ fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
     let (mut sender, FlowRequest { number, wanted, .. }) = asking();
     let mut outputs = Outputs::of(0);
     let part = wanted / 4.0;
-    for (flow, until) in [(wanted, NOW + 2), (part, NOW + 4)] {
-        sender.hear_grant(5, FlowGrant { number, flow, until });
-    }
+    let for_longer = GrantedPart { flow: part, until: NOW + 4 };
+    let grant = FlowGrant { number, flow: wanted, until: NOW + 2, part: Some(for_longer) };
+    sender.hear_grant(5, grant);
     sender.take_in_requests(&mut outputs);
     for (later, flow) in [(2, wanted), (3, part), (4, part), (5, 0.0)] {
         sender.period = NOW + later;
@@ -312,7 +316,7 @@ fn an_answer_to_an_older_request_counts_for_nothing() {
     let (mut robot, FlowRequest { number, .. }) = asking();
     let mut outputs = Outputs::of(0);
     let older = RequestNumber { number: number.number - 1, ..number };
-    robot.hear_grant(5, FlowGrant { number: older, flow: 0.5, until: NOW + LEASE });
+    robot.hear_grant(5, FlowGrant { number: older, flow: 0.5, until: NOW + LEASE, part: None });
     robot.take_in_requests(&mut outputs);
     assert!(!robot.sends_to(5) && !robot.requests_are_answered());
     assert!(robot.has_asked(5) && !robot.has_asked(ROBOTS) && !robot.has_asked(4));
@@ -440,7 +444,7 @@ fn flows_take_no_more_than_all_the_time_of_a_sender() {
     (robot.links[0].share, robot.links[1].share) = (0.7, 0.7);
     robot.ask_for_flows(&mut outputs);
     let number = requests(&mut outputs)[0].1.number;
-    robot.hear_grant(5, FlowGrant { number, flow: 0.7 * one, until: NOW + LEASE });
+    robot.hear_grant(5, FlowGrant { number, flow: 0.7 * one, until: NOW + LEASE, part: None });
     robot.take_in_requests(&mut outputs);
     let flows = [robot.held_flow(5).flow, robot.held_flow(ROBOTS).flow];
     assert!((flows[0] / one + flows[1] / two - 1.0).abs() < 1e-9, "{flows:?}");
@@ -463,7 +467,7 @@ fn flows_that_are_raised_together_share_the_time_that_is_left() {
     (robot.links[0].share, robot.links[1].share) = (0.6, 0.0);
     robot.ask_for_flows(&mut outputs);
     let number = requests(&mut outputs)[0].1.number;
-    robot.hear_grant(5, FlowGrant { number, flow: 0.6 * one, until: NOW + LEASE });
+    robot.hear_grant(5, FlowGrant { number, flow: 0.6 * one, until: NOW + LEASE, part: None });
     robot.links[1].share = 0.8;
     robot.ask_for_flows(&mut outputs);
     let flows = [robot.held_flow(5).flow, robot.held_flow(ROBOTS).flow];
@@ -489,7 +493,7 @@ fn a_flow_takes_the_place_of_another_without_time_or_flow_to_spare() {
         let number_of_other = RequestNumber { period: NOW, number: 1 };
         robot.hear_request(6, FlowRequest { number: number_of_other, held: 0.0, wanted: 0.0 });
         robot.reservations[0].lease = Lease::of(0.0, NOW + LEASE);
-        robot.hear_grant(5, FlowGrant { number, flow: robot.rate, until: NOW + lasts });
+        robot.hear_grant(5, FlowGrant { number, flow: robot.rate, until: NOW + lasts, part: None });
         robot.take_in_requests(&mut outputs);
         [5, ROBOTS].map(|to| robot.held_flow(to).flow / robot.rate).to_vec()
     };

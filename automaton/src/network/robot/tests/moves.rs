@@ -423,7 +423,10 @@ fn a_sender_relies_on_its_receiver_and_answers_it() {
     let [Message::AskFlow(request)] = asked[..] else { panic!("it asks: {asked:?}") };
     assert!((request.wanted - 0.2 * robot.links[0].reliability).abs() < 1e-12);
     assert_eq!((request.held, request.number), (0.0, RequestNumber { period: NOW, number: 1 }));
-    robot.hear_grant(5, FlowGrant { number: request.number, flow: 0.15, until: NOW + 8 });
+    robot.hear_grant(
+        5,
+        FlowGrant { number: request.number, flow: 0.15, until: NOW + 8, part: None },
+    );
     robot.take_in_requests(&mut outputs);
     assert!((robot.held_flow(5).flow - 0.15).abs() < 1e-12, "no more than is granted");
     robot.begin_negotiation();
