@@ -26,6 +26,10 @@ impl EdgeTree {
         EdgeTree { edges, boxes }
     }
 
+    pub(super) fn edges(&self) -> &[Segment] {
+        &self.edges
+    }
+
     /// Whether `path` passes from one side of some edge to the other.
     pub(super) fn is_crossed_by(&self, path: &Segment) -> bool {
         let probe = Probe::new(path);
@@ -44,10 +48,7 @@ impl EdgeTree {
 
     /// Whether `point` lies in the box around all edges.
     pub(super) fn surrounds(&self, point: Point) -> bool {
-        let holds = |bounds: &Bounds| {
-            (0..2).all(|axis| bounds.low[axis] <= point[axis] && point[axis] <= bounds.high[axis])
-        };
-        !self.edges.is_empty() && holds(&self.boxes.root_aabb().into())
+        !self.edges.is_empty() && Bounds::from(self.boxes.root_aabb()).holds(point)
     }
 
     /// Visits every edge that a ray from `point` to the right crosses, by its index. Exact, but for
@@ -178,7 +179,7 @@ impl EdgeTree {
 
 /// A box with sides along the axes.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+pub(super) struct Bounds {
     low: Point,
     high: Point,
 }
@@ -209,6 +210,25 @@ impl Bounds {
             low: Point::new(from.x.min(to.x), from.y.min(to.y)),
             high: Point::new(from.x.max(to.x), from.y.max(to.y)),
         }
+    }
+
+    /// The smallest box around some points.
+    pub(super) fn around(points: impl Iterator<Item = Point>) -> Option<Bounds> {
+        let alone = |point| Bounds { low: point, high: point };
+        points.map(alone).reduce(|one, other| Bounds {
+            low: one.low.inf(&other.low),
+            high: one.high.sup(&other.high),
+        })
+    }
+
+    /// The box with its sides moved outwards.
+    pub(super) fn widened(self, by: f64) -> Bounds {
+        let by = Vector::new(by, by);
+        Bounds { low: self.low - by, high: self.high + by }
+    }
+
+    pub(super) fn holds(&self, point: Point) -> bool {
+        (0..2).all(|axis| self.low[axis] <= point[axis] && point[axis] <= self.high[axis])
     }
 
     fn distance_squared(&self, point: Point) -> f64 {
