@@ -33,7 +33,7 @@ impl EdgeTree {
     /// Whether `path` passes from one side of some edge to the other.
     pub(super) fn is_crossed_by(&self, path: &Segment) -> bool {
         let probe = Probe::new(path);
-        self.any(|bounds| probe.may_meet(bounds), |_, edge| edge.is_crossed_by(path))
+        self.any(|bounds| bounds.meets(&probe), |_, edge| edge.is_crossed_by(path))
     }
 
     /// Whether `point` lies inside the rings that the edges form (even-odd rule). Exact, but for
@@ -249,6 +249,20 @@ impl Bounds {
         };
         Vector::new(along(0), along(1)).norm()
     }
+
+    /// Whether the box may meet a path: false only if a line parallel to an axis or to the path
+    /// separates them with room to spare for rounding.
+    fn meets(&self, path: &Probe) -> bool {
+        if self.is_apart_from(&path.around) {
+            return false;
+        }
+        let half = (self.high - self.low) / 2.0;
+        let center = self.low + half - path.from;
+        let reach = path.spans.x * half.y + path.spans.y * half.x;
+        let size = largest(self.low) + largest(self.high) + path.size;
+        let rounding = ROUNDING * size * path.spans.x.max(path.spans.y);
+        path.along.perp(&center).abs() <= reach + rounding
+    }
 }
 
 /// A path, with all that the test whether boxes meet it needs of it.
@@ -267,20 +281,6 @@ impl Probe {
         let along = path.vector();
         let spans = along.abs();
         Probe { from: path.from, along, around: Bounds::of(path), spans, size: largest(path.from) }
-    }
-
-    /// Whether a box may meet the path: false only if a line parallel to an axis or to the path
-    /// separates them with room to spare for rounding.
-    fn may_meet(&self, bounds: &Bounds) -> bool {
-        if bounds.is_apart_from(&self.around) {
-            return false;
-        }
-        let half = (bounds.high - bounds.low) / 2.0;
-        let center = bounds.low + half - self.from;
-        let reach = self.spans.x * half.y + self.spans.y * half.x;
-        let size = largest(bounds.low) + largest(bounds.high) + self.size;
-        let rounding = ROUNDING * size * self.spans.x.max(self.spans.y);
-        self.along.perp(&center).abs() <= reach + rounding
     }
 }
 

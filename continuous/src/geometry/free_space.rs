@@ -365,3 +365,25 @@ impl Outline {
         self.rings.iter().flat_map(|ring| edges_of(ring))
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that panics has failed
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_door_may_be_closed_in_the_planning_set_alone() {
+        let rooms = |door: f64| {
+            let top = 2.0 - door;
+            let walls = [(0.0, 0.0), (1.9, 0.0), (1.9, top), (2.1, top), (2.1, 0.0), (4.0, 0.0)];
+            let boundary = walls.into_iter().chain([(4.0, 2.0), (0.0, 2.0)]);
+            let boundary = boundary.map(|(x, y)| Point::new(x, y)).collect();
+            let workspace = Workspace::new(boundary, Vec::new()).unwrap();
+            FreeSpace::with_tolerance(&workspace, 0.1, 1e-3).unwrap()
+        };
+        // ρ + τ is 0.104, and ρ + τ/2 is 0.102.
+        for (door, has_all_passages) in [(0.203, true), (0.206, false), (0.209, true)] {
+            assert_eq!(rooms(door).has_all_passages, has_all_passages, "{door}");
+        }
+    }
+}

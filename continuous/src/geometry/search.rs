@@ -37,6 +37,9 @@ const FEW_CORNERS: usize = 32;
 /// goal as bound. Whether two nodes see each other is tested only when the step between them is
 /// the most promising one left, so that most pairs are never tested. Most paths are hardly longer than
 /// the straight line: corners farther away are looked at only when no shorter way is left.
+///
+/// Without discs every corner of a shortest path is touched, by links and by the steps from the start and to
+/// the goal: others are not looked at, where [both ends allow it](FreeSpace::keep_paths_taut).
 pub(super) fn shortest_path(
     space: &FreeSpace,
     from: Point,
@@ -227,17 +230,16 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Looks at ways up to this length, or at all where most corners are nearby.
+    /// Looks at ways up to this length, or at all where there are few corners or most are nearby.
     fn look_up_to(&mut self, length: f64) {
         let [from, to] = self.ends;
         let corners = self.space.corners().len();
-        let on_ways = || self.space.corners_on_ways(from, to, length);
-        let is_choice = |nearby: &Vec<usize>| nearby.len() < corners / 2;
-        (self.longest, self.nearby) = match (corners > FEW_CORNERS).then(on_ways).filter(is_choice)
-        {
-            Some(nearby) => (length, nearby),
-            None => (f64::INFINITY, (0..corners).collect()),
-        };
+        if corners > FEW_CORNERS {
+            (self.longest, self.nearby) = (length, self.space.corners_on_ways(from, to, length));
+        }
+        if corners <= FEW_CORNERS || self.nearby.len() >= corners / 2 {
+            (self.longest, self.nearby) = (f64::INFINITY, (0..corners).collect());
+        }
     }
 
     /// The length of the way that takes this step and goes straight on to the goal, if it can.
@@ -318,6 +320,7 @@ mod tests {
         FreeSpace::new(&workspace, 0.1).unwrap()
     }
 
+    /// Over all in any direction, too.
     #[test]
     fn paths_over_the_corners_nearby_are_those_over_all() {
         let space = hall();
@@ -334,6 +337,7 @@ mod tests {
                 }
                 let mut search = Search::new(&space, from, to, discs);
                 search.look_up_to(f64::INFINITY);
+                search.ends_are_taut = false;
                 let is_passable = |path: &Segment| avoids(path, discs) && space.is_clear(path);
                 let over_all =
                     search.run().map(|waypoints| space.departure(from, waypoints, is_passable));
