@@ -1,12 +1,11 @@
 //! A tree of boxes over edges: the questions that are asked of outlines with thousands of edges.
 
 use parry2d_f64::bounding_volume::Aabb;
-use parry2d_f64::math::Vector;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhLeafCost, BvhNode, TraversalAction};
 
 use super::Segment;
 use super::segment::side;
-use crate::Point;
+use crate::{Point, Vector};
 
 /// Relative rounding error that the test of a box against a path allows for: more than its dozen
 /// operations can sum up to.
@@ -27,9 +26,14 @@ impl EdgeTree {
         EdgeTree { edges, boxes }
     }
 
+    pub(super) fn edges(&self) -> &[Segment] {
+        &self.edges
+    }
+
     /// Whether `path` passes from one side of some edge to the other.
     pub(super) fn is_crossed_by(&self, path: &Segment) -> bool {
-        self.any(|bounds| bounds.meets(path), |_, edge| edge.is_crossed_by(path))
+        let probe = Probe::new(path);
+        self.any(|bounds| bounds.meets(&probe), |_, edge| edge.is_crossed_by(path))
     }
 
     /// Whether `point` lies inside the rings that the edges form (even-odd rule). Exact, but for
@@ -44,10 +48,7 @@ impl EdgeTree {
 
     /// Whether `point` lies in the box around all edges.
     pub(super) fn surrounds(&self, point: Point) -> bool {
-        let holds = |bounds: &Bounds| {
-            (0..2).all(|axis| bounds.low[axis] <= point[axis] && point[axis] <= bounds.high[axis])
-        };
-        !self.edges.is_empty() && holds(&self.boxes.root_aabb().into())
+        !self.edges.is_empty() && Bounds::from(self.boxes.root_aabb()).holds(point)
     }
 
     /// Visits every edge that a ray from `point` to the right crosses, by its index. Exact, but for
@@ -131,7 +132,7 @@ impl EdgeTree {
     ) {
         let around = Bounds::of(segment);
         self.any(
-            |bounds| bounds.gap(&around) == 0.0,
+            |bounds| !bounds.is_apart_from(&around),
             |index, edge| {
                 visit(index, edge);
                 false
@@ -178,7 +179,7 @@ impl EdgeTree {
 
 /// A box with sides along the axes.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+pub(super) struct Bounds {
     low: Point,
     high: Point,
 }
@@ -197,13 +198,37 @@ impl From<Aabb> for Bounds {
 
 impl From<Bounds> for Aabb {
     fn from(Bounds { low, high }: Bounds) -> Aabb {
-        Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y))
+        let corner = |corner: Point| parry2d_f64::math::Vector::new(corner.x, corner.y);
+        Aabb::new(corner(low), corner(high))
     }
 }
 
 impl Bounds {
     fn of(segment: &Segment) -> Bounds {
-        Bounds { low: segment.from.inf(&segment.to), high: segment.from.sup(&segment.to) }
+        let Segment { from, to } = segment;
+        Bounds {
+            low: Point::new(from.x.min(to.x), from.y.min(to.y)),
+            high: Point::new(from.x.max(to.x), from.y.max(to.y)),
+        }
+    }
+
+    /// The smallest box around some points.
+    pub(super) fn around(points: impl Iterator<Item = Point>) -> Option<Bounds> {
+        let alone = |point| Bounds { low: point, high: point };
+        points.map(alone).reduce(|one, other| Bounds {
+            low: one.low.inf(&other.low),
+            high: one.high.sup(&other.high),
+        })
+    }
+
+    /// The box with its sides moved outwards.
+    pub(super) fn widened(self, by: f64) -> Bounds {
+        let by = Vector::new(by, by);
+        Bounds { low: self.low - by, high: self.high + by }
+    }
+
+    pub(super) fn holds(&self, point: Point) -> bool {
+        (0..2).all(|axis| self.low[axis] <= point[axis] && point[axis] <= self.high[axis])
     }
 
     fn distance_squared(&self, point: Point) -> f64 {
@@ -213,28 +238,54 @@ impl Bounds {
         beyond(0).powi(2) + beyond(1).powi(2)
     }
 
+    fn is_apart_from(&self, other: &Bounds) -> bool {
+        (0..2).any(|axis| self.low[axis] > other.high[axis] || other.low[axis] > self.high[axis])
+    }
+
     /// A lower bound of the distance between the boxes: 0 if they overlap.
     fn gap(&self, other: &Bounds) -> f64 {
         let along = |axis: usize| {
             (self.low[axis] - other.high[axis]).max(other.low[axis] - self.high[axis]).max(0.0)
         };
-        along(0).hypot(along(1))
+        Vector::new(along(0), along(1)).norm()
     }
 
-    /// Whether the box may meet `path`: false only if a line parallel to an axis or to the path
+    /// Whether the box may meet a path: false only if a line parallel to an axis or to the path
     /// separates them with room to spare for rounding.
-    fn meets(&self, path: &Segment) -> bool {
-        if self.gap(&Bounds::of(path)) > 0.0 {
+    fn meets(&self, path: &Probe) -> bool {
+        if self.is_apart_from(&path.around) {
             return false;
         }
-        let along = path.vector();
         let half = (self.high - self.low) / 2.0;
         let center = self.low + half - path.from;
-        let reach = along.x.abs() * half.y + along.y.abs() * half.x;
-        let size = self.low.coords.amax() + self.high.coords.amax() + path.from.coords.amax();
-        let rounding = ROUNDING * size * along.amax();
-        along.perp(&center).abs() <= reach + rounding
+        let reach = path.spans.x * half.y + path.spans.y * half.x;
+        let size = largest(self.low) + largest(self.high) + path.size;
+        let rounding = ROUNDING * size * path.spans.x.max(path.spans.y);
+        path.along.perp(&center).abs() <= reach + rounding
     }
+}
+
+/// A path, with all that the test whether boxes meet it needs of it.
+struct Probe {
+    from: Point,
+    along: Vector,
+    around: Bounds,
+    /// The magnitudes of the components of `along`.
+    spans: Vector,
+    /// The largest magnitude of a coordinate of `from`.
+    size: f64,
+}
+
+impl Probe {
+    fn new(path: &Segment) -> Probe {
+        let along = path.vector();
+        let spans = along.abs();
+        Probe { from: path.from, along, around: Bounds::of(path), spans, size: largest(path.from) }
+    }
+}
+
+fn largest(point: Point) -> f64 {
+    point.x.abs().max(point.y.abs())
 }
 
 #[cfg(test)]

@@ -48,6 +48,8 @@ pub struct FreeSpace {
     pub(super) reach: f64,
     planning: Outline,
     sight: Outline,
+    /// Whether no passage of the sight set is closed in the planning set.
+    has_all_passages: bool,
     graph: VisibilityGraph,
 }
 
@@ -150,10 +152,11 @@ impl FreeSpace {
         if planning.rings.is_empty() {
             return Err(FreeSpaceError::Empty { clearance, extent });
         }
-        let walls: Vec<Segment> = sight.edges().collect();
-        let graph = VisibilityGraph::new(&planning.rings, &walls, tolerance);
+        let graph = VisibilityGraph::new(&planning.rings, tolerance);
         let reach = REACH * (clearance + tolerance);
-        let free_space = FreeSpace { clearance, tolerance, reach, planning, sight, graph };
+        let has_all_passages = planning.has_all_passages_of(&sight);
+        let free_space =
+            FreeSpace { clearance, tolerance, reach, planning, sight, has_all_passages, graph };
         free_space.certify(workspace)?;
         Ok(free_space)
     }
@@ -207,11 +210,7 @@ impl FreeSpace {
     /// Which connected piece of the free space `point` lies in, `None` if it lies in none.
     /// Robots cannot walk from one piece to another.
     pub fn region(&self, point: Point) -> Option<usize> {
-        if !self.contains(point) {
-            return None;
-        }
-        // From a point inside, nothing lies between it and the nearest edge: that edge bounds its region.
-        self.sight.tree.nearest(point).map(|(edge, _)| self.sight.region_of_edge[edge])
+        self.sight.region(point)
     }
 
     /// Whether a robot can walk straight from one point to the other: the segment between them
@@ -233,6 +232,12 @@ impl FreeSpace {
         !self.sight.tree.is_crossed_by(path)
     }
 
+    /// Whether shortest paths between two points touch the corners that they bend at: both points lie in the
+    /// planning set, which has all passages of the sight set. For points on the outline either answer may come.
+    pub(super) fn keep_paths_taut(&self, from: Point, to: Point) -> bool {
+        self.has_all_passages && [from, to].iter().all(|&end| self.planning.tree.encloses(end))
+    }
+
     pub(super) fn corners(&self) -> &[Corner] {
         self.graph.corners()
     }
@@ -247,6 +252,12 @@ impl FreeSpace {
         self.graph.may_link(one, other)
     }
 
+    /// Whether shortest paths may go from a corner to a place, if they see each other and
+    /// [touch](Self::keep_paths_taut) corners there.
+    pub(super) fn may_touch(&self, corner: usize, place: Point) -> bool {
+        self.graph.may_touch(corner, place)
+    }
+
     /// The corners over which ways between two points up to a length can lead, ascending.
     pub(super) fn corners_on_ways(&self, from: Point, to: Point, longest: f64) -> Vec<usize> {
         self.graph.corners_on_ways(from, to, longest)
@@ -254,8 +265,11 @@ impl FreeSpace {
 
     /// The corners that a robot at a point of the sight set sees, ascending, with the distances.
     pub(super) fn corners_seen_from(&self, point: Point) -> impl Iterator<Item = (usize, f64)> {
-        let seen =
-            self.sight.tree.nearest(point).map(|(wall, _)| self.graph.seen_from(point, wall));
+        let seen = self
+            .sight
+            .tree
+            .nearest(point)
+            .map(|(wall, _)| self.graph.seen_from(point, wall, &self.sight.tree));
         seen.into_iter().flatten().filter_map(move |Seen { place, may_touch }| {
             let path = Segment::new(point, self.corners()[place].at);
             (!may_touch || self.is_clear(&path)).then(|| (place, path.length()))
@@ -306,6 +320,8 @@ struct Outline {
     rings: Vec<Vec<Point>>,
     tree: EdgeTree,
     region_of_edge: Vec<usize>,
+    /// How many rings each region has.
+    rings_of_region: Vec<usize>,
 }
 
 impl Outline {
@@ -315,12 +331,59 @@ impl Outline {
             .enumerate()
             .flat_map(|(region, edges): (usize, usize)| std::iter::repeat_n(region, edges))
             .collect();
+        let rings_of_region = regions.iter().map(Vec::len).collect();
         let rings: Vec<Vec<Point>> = regions.into_iter().flatten().collect();
         let tree = EdgeTree::new(rings.iter().flat_map(|ring| edges_of(ring)));
-        Outline { rings, tree, region_of_edge }
+        Outline { rings, tree, region_of_edge, rings_of_region }
+    }
+
+    /// The region that a point lies in, `None` if it lies in none.
+    fn region(&self, point: Point) -> Option<usize> {
+        if !self.tree.encloses(point) {
+            return None;
+        }
+        // From a point inside, nothing lies between it and the nearest edge: that edge bounds its region.
+        self.tree.nearest(point).map(|(edge, _)| self.region_of_edge[edge])
+    }
+
+    /// Whether this set, which shrinks a larger one, has all passages of it: a passage that closes cuts a
+    /// region in two or joins two of its rings.
+    fn has_all_passages_of(&self, larger: &Outline) -> bool {
+        let mut is_found = vec![false; larger.rings_of_region.len()];
+        let mut first = 0;
+        self.rings_of_region.iter().all(|&rings| {
+            let outer = &self.rings[first];
+            first += rings;
+            larger.region(outer[0]).is_some_and(|region| {
+                let is_second = std::mem::replace(&mut is_found[region], true);
+                !is_second && larger.rings_of_region[region] == rings
+            })
+        })
     }
 
     fn edges(&self) -> impl Iterator<Item = Segment> {
         self.rings.iter().flat_map(|ring| edges_of(ring))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that panics has failed
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_door_may_be_closed_in_the_planning_set_alone() {
+        let rooms = |door: f64| {
+            let top = 2.0 - door;
+            let walls = [(0.0, 0.0), (1.9, 0.0), (1.9, top), (2.1, top), (2.1, 0.0), (4.0, 0.0)];
+            let boundary = walls.into_iter().chain([(4.0, 2.0), (0.0, 2.0)]);
+            let boundary = boundary.map(|(x, y)| Point::new(x, y)).collect();
+            let workspace = Workspace::new(boundary, Vec::new()).unwrap();
+            FreeSpace::with_tolerance(&workspace, 0.1, 1e-3).unwrap()
+        };
+        // ρ + τ is 0.104, and ρ + τ/2 is 0.102.
+        for (door, has_all_passages) in [(0.203, true), (0.206, false), (0.209, true)] {
+            assert_eq!(rooms(door).has_all_passages, has_all_passages, "{door}");
+        }
     }
 }

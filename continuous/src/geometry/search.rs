@@ -27,13 +27,19 @@ const GROWTH: f64 = 1.5;
 const FEW_NEARBY: usize = 64;
 const SHARE: usize = 16;
 
+/// Up to this many corners are all looked at.
+const FEW_CORNERS: usize = 32;
+
 /// A shortest path from `from` to `to`, both in the free space, around every one of `discs`, whose
-/// rims are replaced by polygons; `None` if there is none.
+/// rims are replaced by polygons; `None` if there is none. The straight way between them is not open.
 ///
 /// The search is A\* (<https://doi.org/10.1109/TSSC.1968.300136>) with the straight distance to the
 /// goal as bound. Whether two nodes see each other is tested only when the step between them is
 /// the most promising one left, so that most pairs are never tested. Most paths are hardly longer than
 /// the straight line: corners farther away are looked at only when no shorter way is left.
+///
+/// Without discs every corner of a shortest path is touched, by links and by the steps from the start and to
+/// the goal: others are not looked at, where [both ends allow it](FreeSpace::keep_paths_taut).
 pub(super) fn shortest_path(
     space: &FreeSpace,
     from: Point,
@@ -59,6 +65,8 @@ struct Search<'a> {
     discs: &'a [Disc],
     ends: [Point; 2],
     rims: Vec<Point>,
+    /// Whether ways between an end and a corner are looked at only if they are taut at the corner.
+    ends_are_taut: bool,
     /// The length up to which ways are looked at.
     longest: f64,
     /// The corners over which ways up to that length can lead, ascending.
@@ -67,6 +75,8 @@ struct Search<'a> {
     frontier: BinaryHeap<Ranked<Step>>,
     /// The length of the shortest way to each node that has been reached, and the node before.
     reached: Vec<Option<(f64, usize)>>,
+    /// The least cost of the steps to each node that have been queued and are possible for certain.
+    least: Vec<f64>,
     /// The nodes that have been reached whose steps to corners are in the frontier up to the longest ways only.
     unfinished: Vec<usize>,
 }
@@ -88,22 +98,27 @@ impl<'a> Search<'a> {
         let rims: Vec<Point> =
             discs.iter().flat_map(|disc| rim(disc, from)).filter(is_usable).collect();
         let nodes = FIRST_CORNER + space.corners().len() + rims.len();
+        // Beside a disc a shortest path may bend where no obstacle is.
+        let ends_are_taut = discs.is_empty() && space.keep_paths_taut(from, to);
         Search {
             space,
             discs,
             ends: [from, to],
             rims,
+            ends_are_taut,
             longest: 0.0,
             nearby: Vec::new(),
-            frontier: BinaryHeap::new(),
+            frontier: BinaryHeap::with_capacity(FEW_NEARBY),
             reached: vec![None; nodes],
+            least: vec![f64::INFINITY; nodes],
             unfinished: Vec::new(),
         }
     }
 
     /// Waypoints of a shortest path, without the start.
     fn run(mut self) -> Option<Vec<Point>> {
-        self.reach(START, START, 0.0);
+        self.reached[START] = Some((0.0, START));
+        self.look_from(START, 0.0);
         while self.reached[GOAL].is_none() {
             match self.frontier.peek() {
                 Some(next) if next.cost > self.longest => self.look_farther(),
@@ -120,22 +135,24 @@ impl<'a> Search<'a> {
         let Some(Ranked { item: step, .. }) = self.frontier.pop() else { return };
         let Some((so_far, _)) = self.reached[step.from] else { return };
         if self.reached[step.to].is_none() && self.is_possible(step) {
-            self.reach(step.to, step.from, so_far + self.segment(step).length());
+            let length = so_far + self.segment(step).length();
+            self.reached[step.to] = Some((length, step.from));
+            if step.to != GOAL {
+                self.look_from(step.to, length);
+            }
         }
     }
 
-    /// The shortest way to a node is known. What may come next joins the frontier.
-    fn reach(&mut self, node: usize, previous: usize, length: f64) {
-        self.reached[node] = Some((length, previous));
-        let rims = self.first_rim()..self.reached.len();
-        for to in rims.chain([GOAL]) {
+    /// The shortest way to a node is known, and so long. What may come next joins the frontier.
+    fn look_from(&mut self, node: usize, length: f64) {
+        for to in self.first_rim()..self.reached.len() {
             self.consider(Step { to, from: node, is_link: false });
         }
+        if node != START && self.may_touch(node, GOAL) {
+            self.consider(Step { to: GOAL, from: node, is_link: false });
+        }
         if self.is_corner(node) && !self.has_few_nearby() {
-            let space = self.space;
-            for link in space.links(node - FIRST_CORNER) {
-                self.consider(Step { to: link.corner + FIRST_CORNER, from: node, is_link: true });
-            }
+            self.consider_links(node, length);
         } else {
             self.unfinished.push(node);
             self.consider_nearby(node, f64::NEG_INFINITY);
@@ -143,7 +160,28 @@ impl<'a> Search<'a> {
     }
 
     fn consider(&mut self, step: Step) {
-        self.queue(step, self.cost(step));
+        if self.reached[step.to].is_none() {
+            self.frontier.push(Ranked { cost: self.cost(step), item: step });
+        }
+    }
+
+    /// Considers the links of a corner, to which the shortest way is this long. Without discs all are possible: of
+    /// those to the same corner only the cheapest counts.
+    fn consider_links(&mut self, node: usize, so_far: f64) {
+        let space = self.space;
+        for link in space.links(node - FIRST_CORNER) {
+            let to = link.corner + FIRST_CORNER;
+            if self.reached[to].is_none() {
+                let cost = so_far + link.length + self.onwards(to);
+                if cost <= self.least[to] {
+                    if self.discs.is_empty() {
+                        self.least[to] = cost;
+                    }
+                    self.frontier
+                        .push(Ranked { cost, item: Step { to, from: node, is_link: true } });
+                }
+            }
+        }
     }
 
     /// Considers the steps from a node to corners nearby, on ways longer than those that have been looked at.
@@ -151,22 +189,29 @@ impl<'a> Search<'a> {
         for at in 0..self.nearby.len() {
             let corner = self.nearby[at];
             let step = Step { to: corner + FIRST_CORNER, from: node, is_link: false };
+            if self.reached[step.to].is_some() {
+                continue;
+            }
             let cost = self.cost(step);
             if shorter < cost && cost <= self.longest && self.may_be_taut(node, corner) {
-                self.queue(step, cost);
+                self.frontier.push(Ranked { cost, item: step });
             }
-        }
-    }
-
-    fn queue(&mut self, step: Step, cost: f64) {
-        if self.reached[step.to].is_none() {
-            self.frontier.push(Ranked { cost, item: step });
         }
     }
 
     /// Whether shortest paths may go from a node straight to a corner.
     fn may_be_taut(&self, node: usize, corner: usize) -> bool {
-        !self.is_corner(node) || self.space.may_link(node - FIRST_CORNER, corner)
+        match node {
+            _ if self.is_corner(node) => self.space.may_link(node - FIRST_CORNER, corner),
+            START => self.may_touch(corner + FIRST_CORNER, START),
+            _ => true,
+        }
+    }
+
+    /// Whether shortest paths may go straight between a node and an end.
+    fn may_touch(&self, node: usize, end: usize) -> bool {
+        !(self.ends_are_taut && self.is_corner(node))
+            || self.space.may_touch(node - FIRST_CORNER, self.at(end))
     }
 
     /// Whether steps to the corners nearby are looked at one by one. Links, which the free space finds when they are
@@ -185,12 +230,14 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Looks at ways up to this length, or at all where most corners are nearby.
+    /// Looks at ways up to this length, or at all where there are few corners or most are nearby.
     fn look_up_to(&mut self, length: f64) {
         let [from, to] = self.ends;
         let corners = self.space.corners().len();
-        (self.longest, self.nearby) = (length, self.space.corners_on_ways(from, to, length));
-        if self.nearby.len() >= corners / 2 {
+        if corners > FEW_CORNERS {
+            (self.longest, self.nearby) = (length, self.space.corners_on_ways(from, to, length));
+        }
+        if corners <= FEW_CORNERS || self.nearby.len() >= corners / 2 {
             (self.longest, self.nearby) = (f64::INFINITY, (0..corners).collect());
         }
     }
@@ -198,8 +245,12 @@ impl<'a> Search<'a> {
     /// The length of the way that takes this step and goes straight on to the goal, if it can.
     fn cost(&self, step: Step) -> f64 {
         let so_far = self.reached[step.from].map_or(0.0, |(length, _)| length);
-        let onwards = (self.at(GOAL) - self.at(step.to)).norm();
-        so_far + self.segment(step).length() + onwards
+        so_far + self.segment(step).length() + self.onwards(step.to)
+    }
+
+    /// The distance from a node to the goal.
+    fn onwards(&self, node: usize) -> f64 {
+        (self.at(GOAL) - self.at(node)).norm()
     }
 
     fn is_possible(&self, step: Step) -> bool {
@@ -269,6 +320,7 @@ mod tests {
         FreeSpace::new(&workspace, 0.1).unwrap()
     }
 
+    /// Over all in any direction, too.
     #[test]
     fn paths_over_the_corners_nearby_are_those_over_all() {
         let space = hall();
@@ -279,8 +331,13 @@ mod tests {
         let disc = Disc { center: places[40], radius: 0.05 };
         for discs in [&[][..], &[disc]] {
             for (from, to) in ends().flat_map(|from| ends().map(move |to| (*from, *to))) {
+                let straight = Segment::new(from, to);
+                if avoids(&straight, discs) && space.is_clear(&straight) {
+                    continue;
+                }
                 let mut search = Search::new(&space, from, to, discs);
                 search.look_up_to(f64::INFINITY);
+                search.ends_are_taut = false;
                 let is_passable = |path: &Segment| avoids(path, discs) && space.is_clear(path);
                 let over_all =
                     search.run().map(|waypoints| space.departure(from, waypoints, is_passable));

@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
 
 use super::Segment;
+use super::edge_tree::Bounds;
 use super::segment::side;
 use crate::{Point, Vector};
 
@@ -19,12 +20,24 @@ use crate::{Point, Vector};
 /// are then taken for 0, since the library that triangulates refuses them.
 const LEAST_COORDINATE: f64 = 1e-40;
 
+/// Room for as many places and cones as there mostly are.
+const MOSTLY: usize = 32;
+
 /// A place that is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Seen {
     pub(super) place: usize,
     /// Whether the line of sight may touch a wall; otherwise it certainly keeps clear of all.
     pub(super) may_touch: bool,
+}
+
+/// What is seen from a point.
+#[derive(Debug)]
+pub(super) struct Sight {
+    /// The places, in ascending order.
+    pub(super) places: Vec<Seen>,
+    /// A box around all that is seen, and perhaps more.
+    pub(super) around: Option<Bounds>,
 }
 
 /// A constrained Delaunay triangulation of the plane around walls and places.
@@ -122,13 +135,13 @@ impl Triangulation {
         })
     }
 
-    /// The places seen from a place, in ascending order, without those in directions that `skips`
+    /// What is seen from a place, without the directions that `skips`
     /// rules out: it is told two limits, right and left, and whether nothing between them matters.
     pub(super) fn seen_from_place(
         &self,
         place: usize,
         skips: impl Fn(Vector, Vector) -> bool,
-    ) -> Vec<Seen> {
+    ) -> Sight {
         let vertex = self.vertex_of_place[place];
         self.seen(self.vertices[vertex as usize].at, &self.around_vertex(vertex), skips)
     }
@@ -138,16 +151,12 @@ impl Triangulation {
     pub(super) fn seen_from(&self, point: Point, wall: usize) -> Option<Vec<Seen>> {
         let point = scaled(point, self.scale);
         let start = self.around(point, self.vertex_of_wall[wall])?;
-        Some(self.seen(point, &start, |_, _| false))
+        Some(self.seen(point, &start, |_, _| false).places)
     }
 
-    fn seen(
-        &self,
-        from: Point,
-        start: &Start,
-        skips: impl Fn(Vector, Vector) -> bool,
-    ) -> Vec<Seen> {
-        let mut seen = Vec::new();
+    fn seen(&self, from: Point, start: &Start, skips: impl Fn(Vector, Vector) -> bool) -> Sight {
+        let mut tips: Vec<Point> = Vec::with_capacity(MOSTLY);
+        let mut seen = Vec::with_capacity(MOSTLY);
         let must_be_tested = start.touches_wall || !self.has_all_walls;
         let mut see = |vertex: u32, is_inside: bool| {
             let may_touch =
@@ -161,16 +170,15 @@ impl Triangulation {
             let beyond = twin.filter(|_| !is_wall && !skips(right - from, left - from))?;
             Some(Cone { side: beyond, left, right })
         };
-        let mut cones: Vec<Cone> = start
-            .sides
-            .iter()
-            .filter_map(|&side| look_over(side, self.end(side), self.origin(side)))
-            .collect();
+        let mut cones: Vec<Cone> = Vec::with_capacity(MOSTLY);
+        let sides = start.sides.iter();
+        cones.extend(sides.filter_map(|&at| look_over(at, self.end(at), self.origin(at))));
         while let Some(Cone { side: entered, left, right }) = cones.pop() {
             // Seen from where sight comes from, the side that it enters over runs from the left to
             // the right, and the tip of the triangle lies behind.
             let (right_side, left_side) = (following(entered), preceding(entered));
             let tip = self.origin(left_side);
+            tips.push(tip);
             let (of_left, of_right) = (side(from, left, tip), side(from, right, tip));
             if of_left <= 0.0 && of_right >= 0.0 {
                 see(self.sides[left_side as usize].origin, of_left < 0.0 && of_right > 0.0);
@@ -187,7 +195,9 @@ impl Triangulation {
         // A place at the limit of two cones is seen twice.
         seen.sort_unstable();
         seen.dedup_by_key(|seen| seen.place);
-        seen
+        let around = start.vertices.iter().map(|&vertex| self.vertices[vertex as usize].at);
+        let around = Bounds::around(around.chain(tips).map(|at| at / self.scale));
+        Sight { places: seen, around }
     }
 
     fn around_vertex(&self, vertex: u32) -> Start {
@@ -403,7 +413,12 @@ mod tests {
                 check(&walls, &places, from, &seen);
             }
             for (index, &from) in places.iter().enumerate() {
-                check(&walls, &places, from, &triangulation.seen_from_place(index, |_, _| false));
+                let sight = triangulation.seen_from_place(index, |_, _| false);
+                check(&walls, &places, from, &sight.places);
+                let is_around = |at: Point| sight.around.is_some_and(|around| around.holds(at));
+                for seen in sight.places {
+                    prop_assert!(is_around(places[seen.place]));
+                }
             }
         }
     }
@@ -417,6 +432,6 @@ mod tests {
         let places = [Point::new(0.5, 1.0), Point::new(1.5, 1.0)];
         let triangulation = Triangulation::new(&walls, &places).unwrap();
         let seen = triangulation.seen_from_place(0, |_, _| false);
-        assert!(seen.iter().all(|seen| seen.may_touch));
+        assert!(seen.places.iter().all(|seen| seen.may_touch));
     }
 }

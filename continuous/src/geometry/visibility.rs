@@ -5,9 +5,9 @@
 
 use std::sync::OnceLock;
 
-use super::edge_tree::EdgeTree;
+use super::edge_tree::{Bounds, EdgeTree};
 use super::segment::side;
-use super::triangulation::{Seen, Triangulation};
+use super::triangulation::{Seen, Sight, Triangulation};
 use super::{Neighbours, Segment};
 use crate::{Point, Vector};
 
@@ -30,46 +30,69 @@ pub(super) struct Link {
     pub(super) length: f64,
 }
 
+/// What a corner sees in taut directions.
+#[derive(Debug, Clone)]
+struct Outlook {
+    links: Vec<Link>,
+    /// A box around all of it; none if it may be everywhere.
+    around: Option<Bounds>,
+}
+
 /// The reflex corners of the free space, and the taut links between those that see each other.
 ///
 /// Links are found when somebody asks for them first, corner by corner: in a large hall of pillars
-/// there are millions, and most are never needed.
+/// there are millions, and most are never needed. So is the triangulation.
 #[derive(Debug, Clone)]
 pub(super) struct VisibilityGraph {
     corners: Vec<Corner>,
     /// The corners by where they are.
     places: Neighbours,
-    links: Vec<OnceLock<Vec<Link>>>,
+    outlooks: Vec<OnceLock<Outlook>>,
     /// The walls, with the corners as places; `None` if there is nothing to triangulate.
-    triangulation: Option<Triangulation>,
+    triangulation: OnceLock<Option<Triangulation>>,
     tolerance: f64,
 }
 
 impl VisibilityGraph {
-    /// The graph of the corners of `rings` (the set on their left) that see each other between
-    /// `walls`, the edges of a slightly larger set. Links count as taut up to `tolerance`.
-    pub(super) fn new(rings: &[Vec<Point>], walls: &[Segment], tolerance: f64) -> VisibilityGraph {
+    /// The graph of the corners of `rings` (the set on their left). Links count as taut up to `tolerance`.
+    ///
+    /// Other functions take the walls between which corners see each other, always the same: the edges
+    /// of a slightly larger set.
+    pub(super) fn new(rings: &[Vec<Point>], tolerance: f64) -> VisibilityGraph {
         let corners: Vec<Corner> = rings.iter().flat_map(|ring| reflex_corners(ring)).collect();
         let places: Vec<Point> = corners.iter().map(|corner| corner.at).collect();
-        let triangulation = Triangulation::new(walls, &places);
-        let links = vec![OnceLock::new(); corners.len()];
+        let outlooks = vec![OnceLock::new(); corners.len()];
         let places = Neighbours::new(&places, 0.0);
-        VisibilityGraph { corners, places, links, triangulation, tolerance }
+        VisibilityGraph { corners, places, outlooks, triangulation: OnceLock::new(), tolerance }
     }
 
-    /// The links of a corner, in ascending order of the other one. Takes the walls that the graph
-    /// was made with.
+    /// The links of a corner, in ascending order of the other one.
     pub(super) fn links(&self, corner: usize, walls: &EdgeTree) -> &[Link] {
-        self.links[corner].get_or_init(|| self.find_links(corner, walls))
+        &self.outlooks[corner].get_or_init(|| self.look_from_corner(corner, walls)).links
     }
 
-    fn find_links(&self, index: usize, walls: &EdgeTree) -> Vec<Link> {
+    fn look_from_corner(&self, index: usize, walls: &EdgeTree) -> Outlook {
+        let skips = |right: Vector, left: Vector| {
+            self.corners[index].is_between(right, left, self.tolerance)
+        };
         let link_to = |Seen { place, may_touch }: Seen| {
             let path = self.path(index, place);
             let is_link = self.may_link(index, place) && !(may_touch && walls.is_crossed_by(&path));
             is_link.then(|| Link { corner: place, length: path.length() })
         };
-        self.seen_from_corner(index).into_iter().filter_map(link_to).collect()
+        let Sight { places, around } = match self.triangulation(walls) {
+            Some(triangulation) => triangulation.seen_from_place(index, skips),
+            None => Sight { places: self.all_corners(), around: None },
+        };
+        // Wider than what rounding takes from tiny coordinates.
+        let around = around.map(|around| around.widened(self.tolerance));
+        Outlook { links: places.into_iter().filter_map(link_to).collect(), around }
+    }
+
+    fn triangulation(&self, walls: &EdgeTree) -> Option<&Triangulation> {
+        let places = || self.corners.iter().map(|corner| corner.at).collect::<Vec<Point>>();
+        let triangulate = || Triangulation::new(walls.edges(), &places());
+        self.triangulation.get_or_init(triangulate).as_ref()
     }
 
     fn path(&self, one: usize, other: usize) -> Segment {
@@ -81,6 +104,16 @@ impl VisibilityGraph {
         let path = self.path(one, other);
         let is_touched = |corner: usize| self.corners[corner].is_touched_by(&path, self.tolerance);
         one != other && is_touched(one) && is_touched(other)
+    }
+
+    /// Whether there may be a straight way between a corner and a place that is taut at the corner. What the corner
+    /// sees tells, too, if that has been found. A place at the corner has no direction to tell from.
+    pub(super) fn may_touch(&self, index: usize, place: Point) -> bool {
+        let around = self.outlooks[index].get().and_then(|outlook| outlook.around);
+        let corner = &self.corners[index];
+        let path = Segment::new(place, corner.at);
+        around.is_none_or(|around| around.holds(place))
+            && (path.length() <= self.tolerance || corner.is_touched_by(&path, self.tolerance))
     }
 
     /// The corners over which ways between two points up to a length can lead, ascending.
@@ -97,20 +130,9 @@ impl VisibilityGraph {
         found
     }
 
-    /// Corners that are seen from a corner in taut directions, ascending, and perhaps more.
-    fn seen_from_corner(&self, index: usize) -> Vec<Seen> {
-        let skips = |right: Vector, left: Vector| {
-            self.corners[index].is_between(right, left, self.tolerance)
-        };
-        match &self.triangulation {
-            Some(triangulation) => triangulation.seen_from_place(index, skips),
-            None => self.all_corners(),
-        }
-    }
-
     /// Corners that are seen from a point near a wall, ascending, and perhaps more.
-    pub(super) fn seen_from(&self, point: Point, wall: usize) -> Vec<Seen> {
-        let seen = self.triangulation.as_ref().and_then(|it| it.seen_from(point, wall));
+    pub(super) fn seen_from(&self, point: Point, wall: usize, walls: &EdgeTree) -> Vec<Seen> {
+        let seen = self.triangulation(walls).and_then(|it| it.seen_from(point, wall));
         seen.unwrap_or_else(|| self.all_corners())
     }
 
