@@ -69,7 +69,7 @@ impl MessageFaults {
 /// Tells the draws of links apart: any odd number with its bits mixed will do.
 const LINK_STEP: u64 = 0xD6E8_FEB8_6659_FD93;
 
-/// A medium under a faults.
+/// A medium whose messages fail.
 #[derive(Clone, Debug)]
 pub struct Unreliable<M, W> {
     medium: W,
@@ -93,7 +93,7 @@ struct Late<M> {
 }
 
 impl<M, W> Unreliable<M, W> {
-    /// This medium, under this faults; `seed` decides which messages fail.
+    /// This medium, with these faults; `seed` decides which messages fail.
     pub fn new(medium: W, faults: MessageFaults, seed: u64) -> Self {
         Unreliable {
             medium,

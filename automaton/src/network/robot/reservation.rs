@@ -75,7 +75,7 @@ pub struct FlowRequest {
 }
 
 /// An answer to a request for a flow: all that the receiver of the flow keeps for its sender. Of grants that answer the
-/// same request later ones tell as much or more.
+/// same request later ones tell as much or more, for the control periods that are left.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FlowGrant {
