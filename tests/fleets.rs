@@ -211,8 +211,8 @@ fn fleets_may_lose_messages_and_lose_no_robots() {
     assert_eq!(completed.end.outcome, Outcome::Serviced, "{}", completed.end.reason);
     let bytes = writer.finish().unwrap();
     assert!(matches!(verdict(&bytes), Verdict::Sound { .. }));
-    let troubled = Storm { nodes: vec![(0, NodeFaults::default())], ..lossy };
-    let refused = mission::run_in_storm(&scenario, &troubled, &mut []);
+    let with_faulty_node = Storm { nodes: vec![(0, NodeFaults::default())], ..lossy };
+    let refused = mission::run_in_storm(&scenario, &with_faulty_node, &mut []);
     assert!(matches!(refused, Err(MissionError::FaultsOfFleets)));
 }
 

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::duty::{Duty, Hop, Path};
 use super::record::Outcome;
+use super::robot::ROUNDS_TO_BE_HEARD;
 use super::roll::Wreck;
 use super::shared::{Shared, merge_set};
 use super::wire;
@@ -319,6 +320,8 @@ impl Reports {
 #[derive(Clone, Debug, Default)]
 pub struct LastBeacon {
     last: Option<Arc<Beacon>>,
+    /// In how many rounds of this period it has been told, with what goes beside it, as it is now.
+    told: usize,
 }
 
 impl LastBeacon {
@@ -327,15 +330,32 @@ impl LastBeacon {
         self.last.clone()
     }
 
-    /// The beacon to send now, and whether it differs from the last one.
+    /// The beacon to send now, and whether it differs from the last one: then it is told anew.
     pub fn replace_by(&mut self, now: Beacon) -> (Arc<Beacon>, bool) {
         match &self.last {
             Some(last) if **last == now => (Arc::clone(last), false),
             _ => {
                 let beacon = Arc::new(now);
-                self.last = Some(Arc::clone(&beacon));
+                *self = LastBeacon { last: Some(Arc::clone(&beacon)), told: 0 };
                 (beacon, true)
             }
         }
+    }
+
+    /// A control period begins, or what goes beside the beacon has changed: it is told anew.
+    pub(super) const fn tell_anew(&mut self) {
+        self.told = 0;
+    }
+
+    /// Whether it has been told in as many rounds as it takes to be heard if some are lost.
+    pub(super) const fn is_told(&self) -> bool {
+        self.told == ROUNDS_TO_BE_HEARD
+    }
+
+    /// Whether it is told in this round, which then counts.
+    pub(super) fn tell(&mut self) -> bool {
+        let is_due = !self.is_told();
+        self.told += usize::from(is_due);
+        is_due
     }
 }

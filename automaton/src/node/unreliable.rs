@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_messages_are_lost_as_the_weather_says() {
+    fn as_many_messages_are_lost_as_the_faults_say() {
         let faults = MessageFaults { loss: 0.3, ..MessageFaults::default() };
         let first = heard(faults.clone(), 2_000);
         assert!((1_330..1_470).contains(&first[1].len()), "{}", first[1].len());

@@ -262,21 +262,21 @@ const LANES: usize = 4;
 
 /// Combines the components from `place` on; 0 if all are finite.
 #[inline]
-fn combine_in_lanes<const LANES: usize, const M: usize, const N: usize>(
+fn combine_in_lanes<const WIDTH: usize, const M: usize, const N: usize>(
     targets: &mut [&mut [f64]; M],
     place: usize,
     step: f64,
     weights: &[[f64; N]; M],
     stages: &[&[f64]; N],
 ) -> f64 {
-    let row = |stage: usize| -> [f64; LANES] {
-        let row = &stages[stage][place..place + LANES];
+    let row = |stage: usize| -> [f64; WIDTH] {
+        let row = &stages[stage][place..place + WIDTH];
         std::array::from_fn(|lane| row[lane])
     };
-    let (first, mut sums) = (row(0), [[0.0; LANES]; M]);
+    let (first, mut sums) = (row(0), [[0.0; WIDTH]; M]);
     for stage in 1..N {
         let row = row(stage);
-        let differences: [f64; LANES] = std::array::from_fn(|lane| row[lane] - first[lane]);
+        let differences: [f64; WIDTH] = std::array::from_fn(|lane| row[lane] - first[lane]);
         for (sums, weights) in sums.iter_mut().zip(weights) {
             for (sum, difference) in sums.iter_mut().zip(differences) {
                 *sum += weights[stage] * difference;
@@ -285,8 +285,8 @@ fn combine_in_lanes<const LANES: usize, const M: usize, const N: usize>(
     }
     let mut trace = 0.0;
     for (target, sums) in targets.iter_mut().zip(sums) {
-        let results: [f64; LANES] = std::array::from_fn(|lane| step * sums[lane]);
-        target[place..place + LANES].copy_from_slice(&results);
+        let results: [f64; WIDTH] = std::array::from_fn(|lane| step * sums[lane]);
+        target[place..place + WIDTH].copy_from_slice(&results);
         trace += 0.0 * results.iter().sum::<f64>();
     }
     trace

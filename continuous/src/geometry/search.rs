@@ -234,12 +234,11 @@ impl<'a> Search<'a> {
     fn look_up_to(&mut self, length: f64) {
         let [from, to] = self.ends;
         let corners = self.space.corners().len();
-        if corners > FEW_CORNERS {
-            (self.longest, self.nearby) = (length, self.space.corners_on_ways(from, to, length));
-        }
-        if corners <= FEW_CORNERS || self.nearby.len() >= corners / 2 {
-            (self.longest, self.nearby) = (f64::INFINITY, (0..corners).collect());
-        }
+        let nearby = (corners > FEW_CORNERS).then(|| self.space.corners_on_ways(from, to, length));
+        (self.longest, self.nearby) = match nearby {
+            Some(nearby) if nearby.len() < corners / 2 => (length, nearby),
+            _ => (f64::INFINITY, (0..corners).collect()),
+        };
     }
 
     /// The length of the way that takes this step and goes straight on to the goal, if it can.

@@ -144,7 +144,6 @@ impl AccessPoint {
             is_new: _,
             is_behind: _,
             last_beacon: _,
-            beacon_told: _,
             log: _,
             // The explorer stands for time; without it no robot is missed, and no task, and none restarts.
             forgetful: _,

@@ -51,7 +51,7 @@ impl AccessPoint {
         let is_later = roll.called > self.roll.called;
         self.roll.merge(roll);
         if is_later {
-            self.beacon_told = 0;
+            self.last_beacon.tell_anew();
         }
         // Nobody but the first access point calls rolls: it has begun again since.
         if is_later && (self.is_new || self.is_first()) {

@@ -25,7 +25,7 @@ use super::member::Sense;
 use super::message::Message;
 use super::order::Order;
 use super::record::MissionEvent;
-use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
+use super::robot::{RobotError, RobotFault};
 use super::roll::{Roll, Sightings, Wreck};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election, renew};
@@ -117,8 +117,6 @@ pub struct AccessPoint {
     /// How many control periods have begun.
     period: u32,
     last_beacon: LastBeacon,
-    /// In how many rounds of this period it has told its beacon and the roll as they are now.
-    beacon_told: usize,
     log: Vec<MissionEvent>,
 }
 
@@ -166,7 +164,6 @@ impl AccessPoint {
             clock: period,
             period: 0,
             last_beacon: LastBeacon::default(),
-            beacon_told: 0,
             log: Vec::new(),
         };
         if point.is_first() {
@@ -197,12 +194,8 @@ impl AccessPoint {
     /// Tells its neighbours and, over the wire, the other access points its public state and the roll: in as many rounds
     /// of a period as robots do, counted anew when something in it has changed, or a newer roll is known.
     fn tell_beacon(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
-        let (beacon, is_new) = self.last_beacon.replace_by(self.public_state());
-        if is_new {
-            self.beacon_told = 0;
-        }
-        if self.beacon_told < ROUNDS_TO_BE_HEARD {
-            self.beacon_told += 1;
+        let (beacon, _) = self.last_beacon.replace_by(self.public_state());
+        if self.last_beacon.tell() {
             let (period, roll) = (self.period, self.roll.clone());
             outputs.broadcast(Message::Beacon { period, roll, confirmed: Some(period), beacon });
         }

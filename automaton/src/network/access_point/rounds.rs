@@ -90,7 +90,7 @@ impl AccessPoint {
                 RoundAct::RestartClock => {
                     (self.clock, self.is_behind) = (0.0, false);
                     self.period = self.period.saturating_add(1);
-                    self.beacon_told = 0;
+                    self.last_beacon.tell_anew();
                     self.expect_all();
                 }
                 RoundAct::CallRoll => self.call_roll()?,

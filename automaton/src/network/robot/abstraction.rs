@@ -273,7 +273,6 @@ impl Robot {
             has_unsent_news: _,
             is_unmeasured: _,
             last_beacon: _,
-            beacon_told: _,
             period: _,
             heard_up_to: _,
             desired_parent: _,

@@ -436,9 +436,9 @@ impl Robot {
 
     fn measure_distance(&self, facts: &mut Facts) {
         if self.duty.post().is_some_and(|post| post.is_leading())
-            && let Some(announcement) = self.announcement()
+            && let Some(distance) = self.distance_to_task()
         {
-            facts.distance = (announcement.position - self.position).norm();
+            facts.distance = distance;
         }
     }
 

@@ -148,8 +148,7 @@ pub struct Robot {
     id: NodeId,
     /// The clock τ, with τ̇ = 1 between jumps.
     clock: f64,
-    /// In how many rounds of this period it has told its beacon as it is now.
-    beacon_told: usize,
+    last_beacon: LastBeacon,
     /// What it reports to observers; no robot reads it.
     log: Vec<MissionEvent>,
 
@@ -200,7 +199,6 @@ pub struct Robot {
     posts_made: u32,
     mission: Current<Mission>,
     facts: Facts,
-    last_beacon: LastBeacon,
 
     // The exchange of duties that it is engaged in.
     exchange: Current<Exchange>,
@@ -314,7 +312,6 @@ impl Robot {
             has_unsent_news: true,
             is_unmeasured: true,
             last_beacon: LastBeacon::default(),
-            beacon_told: 0,
             exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
             forgotten_offers: 0,
             partner: None,
@@ -457,17 +454,11 @@ impl Robot {
     /// takes to be heard if some are lost, and then no more.
     fn tell_beacon(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
         let beacon = self.next_beacon();
-        if !self.has_told_beacon() {
-            self.beacon_told += 1;
+        if self.last_beacon.tell() {
             let (period, roll) = (self.period, self.roll.clone());
             let confirmed = self.pass_on_confirmation();
             outputs.broadcast(Message::Beacon { period, roll, confirmed, beacon });
         }
-    }
-
-    /// Whether it has told its public state often enough in this period.
-    fn has_told_beacon(&self) -> bool {
-        self.beacon_told == ROUNDS_TO_BE_HEARD
     }
 
     /// The beacon that the robot sends now: the very same as before unless something
@@ -481,9 +472,7 @@ impl Robot {
             return beacon;
         }
         let (beacon, is_new) = self.last_beacon.replace_by(self.public_state());
-        if is_new {
-            (self.has_news, self.beacon_told) = (true, 0);
-        }
+        self.has_news |= is_new;
         beacon
     }
 
@@ -546,7 +535,7 @@ impl Robot {
 
     /// A control period begins: what is looked at once a period.
     fn begin_period(&mut self) -> Result<(), TransitionError> {
-        self.beacon_told = 0;
+        self.last_beacon.tell_anew();
         self.note_change();
         self.count_unused_periods();
         self.count_orphaned_periods();

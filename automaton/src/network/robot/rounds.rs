@@ -129,6 +129,6 @@ impl Robot {
     /// silence or of an election.
     fn needs_no_round(&self) -> bool {
         let counts_silence = self.round_count.count() < ROUNDS_TO_BE_HEARD;
-        !self.has_news && self.has_told_beacon() && !counts_silence && !self.counts_rounds()
+        !self.has_news && self.last_beacon.is_told() && !counts_silence && !self.counts_rounds()
     }
 }

@@ -6,7 +6,7 @@ use pleach_continuous::geometry::Disc;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Anchor, NodeId, Phase, Post, PostId, PostKind};
 
-use super::super::beacon::{Announcement, Notice, TeamReport};
+use super::super::beacon::{Notice, TeamReport};
 use super::super::duty::Hop;
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
@@ -274,7 +274,12 @@ impl Robot {
         Some((self.site.distance(parent.position(), target), members * link + self.reach()))
     }
 
-    /// Geodesic distance to the announced task.
+    /// The distance to the task announced.
+    pub(super) fn distance_to_task(&self) -> Option<f64> {
+        self.announcement().map(|announcement| (announcement.position - self.position).norm())
+    }
+
+    /// Geodesic distance to the place from which the announced task is serviced.
     pub(super) fn remaining(&self) -> f64 {
         self.target.map_or(0.0, |target| self.site.distance(self.position, target))
     }
@@ -295,10 +300,8 @@ impl Robot {
     /// Whether it leads and can service its task from where it is, although another robot beside it could not: where
     /// none is left that could come, nobody has to.
     fn is_near_enough(&self) -> bool {
-        let within = |announcement: &Announcement| {
-            (announcement.position - self.position).norm() <= self.site.settings.arrival_radius()
-        };
-        self.leads() && self.stretched && self.announcement().is_some_and(within)
+        let within = |distance: f64| distance <= self.site.settings.arrival_radius();
+        self.leads() && self.stretched && self.distance_to_task().is_some_and(within)
     }
 
     /// Whether the links of the robot carry no more, so that it stops where h_i ≤ 1 would break: a recruit makes them

@@ -197,7 +197,7 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
 fn shift_clocks(storm: &mut Storm, draws: &mut Draws, scenario: &ValidScenario) {
     for node in 0..scenario.robot.len() + scenario.access_point.len() {
         let shift = draws.between(0.0, scenario.settings().period);
-        match storm.nodes.iter_mut().find(|(troubled, _)| *troubled == node) {
+        match storm.nodes.iter_mut().find(|(faulty, _)| *faulty == node) {
             Some((_, faults)) => faults.shift = shift,
             None => storm.nodes.push((node, NodeFaults { shift, ..NodeFaults::default() })),
         }
