@@ -39,16 +39,24 @@ const FEW_CORNERS: usize = 32;
 /// the straight line: corners farther away are looked at only when no shorter way is left.
 ///
 /// Without discs every corner of a shortest path is touched, by links and by the steps from the start and to
-/// the goal: others are not looked at, where [both ends allow it](FreeSpace::keep_paths_taut).
+/// the goal: others are not looked at, where [both ends allow it](FreeSpace::keep_paths_taut). As paths bend at corners
+/// of the planning set and may cut through the sight set, one that is left out can be shorter by a few τ. Where nothing
+/// is found, all corners are looked at.
 pub(super) fn shortest_path(
     space: &FreeSpace,
     from: Point,
     to: Point,
     discs: &[Disc],
 ) -> Option<Geodesic> {
-    let mut search = Search::new(space, from, to, discs);
-    search.look_up_to(NEARLY_STRAIGHT * (to - from).norm());
-    let waypoints = search.run()?;
+    // Beside a disc a shortest path may bend where no obstacle is.
+    let may_be_taut = discs.is_empty() && space.keep_paths_taut(from, to);
+    let search = |ends_are_taut: bool| {
+        let mut search = Search::new(space, from, to, discs, ends_are_taut);
+        search.look_up_to(NEARLY_STRAIGHT * (to - from).norm());
+        search.run()
+    };
+    let taut = may_be_taut.then(|| search(true)).flatten();
+    let waypoints = taut.or_else(|| search(false))?;
     let is_passable = |path: &Segment| avoids(path, discs) && space.is_clear(path);
     Some(space.departure(from, waypoints, is_passable))
 }
@@ -91,15 +99,19 @@ struct Step {
 }
 
 impl<'a> Search<'a> {
-    fn new(space: &'a FreeSpace, from: Point, to: Point, discs: &'a [Disc]) -> Search<'a> {
+    fn new(
+        space: &'a FreeSpace,
+        from: Point,
+        to: Point,
+        discs: &'a [Disc],
+        ends_are_taut: bool,
+    ) -> Search<'a> {
         let is_usable = |corner: &Point| {
             space.contains(*corner) && avoids(&Segment::new(*corner, *corner), discs)
         };
         let rims: Vec<Point> =
             discs.iter().flat_map(|disc| rim(disc, from)).filter(is_usable).collect();
         let nodes = FIRST_CORNER + space.corners().len() + rims.len();
-        // Beside a disc a shortest path may bend where no obstacle is.
-        let ends_are_taut = discs.is_empty() && space.keep_paths_taut(from, to);
         Search {
             space,
             discs,
@@ -334,9 +346,8 @@ mod tests {
                 if avoids(&straight, discs) && space.is_clear(&straight) {
                     continue;
                 }
-                let mut search = Search::new(&space, from, to, discs);
+                let mut search = Search::new(&space, from, to, discs, false);
                 search.look_up_to(f64::INFINITY);
-                search.ends_are_taut = false;
                 let is_passable = |path: &Segment| avoids(path, discs) && space.is_clear(path);
                 let over_all =
                     search.run().map(|waypoints| space.departure(from, waypoints, is_passable));

@@ -127,11 +127,15 @@ where
     }
 
     /// The receiver tells the sender that it keeps this. What is told late is less than what the sender knows, and
-    /// changes nothing.
+    /// changes nothing. A receiver that has begun again keeps less, but maybe for longer: of that the sender takes over
+    /// what fits beside what it knows.
     pub fn hear(&mut self, kept: Self) {
         let covers = |end: u32| kept.lasting(end) >= self.lasting(end);
         if covers(self.until) && covers(self.end()) {
             *self = kept;
+        } else {
+            self.promise(kept.flow, kept.until);
+            self.promise(kept.part, kept.part_until);
         }
     }
 

@@ -63,6 +63,7 @@ impl AccessPoint {
         if period > self.period {
             self.is_behind = !self.is_new;
             self.period = period - u32::from(self.is_behind);
+            self.last_beacon.tell_anew();
         }
         self.hear_beacon(beacon);
         if beacon.duty.is_some() {

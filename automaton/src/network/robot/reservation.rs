@@ -389,8 +389,9 @@ impl Robot {
         if held.asked == grant.number {
             held.is_open = false;
             let mut kept = grant.lease();
-            // It may have ended on its way.
+            // It may have ended on its way, and what it renews as well.
             kept.pass(self.period);
+            held.lease.pass(self.period);
             held.lease.hear(kept);
             self.has_flow_news = true;
         }

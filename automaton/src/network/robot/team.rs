@@ -71,8 +71,8 @@ pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> End
              something stands in its way"
         ),
         (None, Some(slack)) => format!(
-            "the primary team stands still although robot {slack} has room on its link: something \
-             stands in its way, and a recruit would not help"
+            "the primary team stands still although robot {slack} has room on its link, or is near enough to the \
+             task: something stands in its way, and a recruit would not help"
         ),
         (None, None) if robot.is_pending() => format!(
             "robot {name} has joined the primary team but cannot reach the robot that it follows"

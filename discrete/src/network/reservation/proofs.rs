@@ -34,13 +34,14 @@ fn no_more_is_granted_than_there_is_to_spare() {
 
 /// A receiver that keeps any flow below 3 until any period below 3, and promises two more, each until any period below
 /// 4: it keeps what it did and what it promises, or nothing changes. Each time it tells what it keeps. The sender hears
-/// three of these tellings, in any order, some of them again: in any period it may use no more than the receiver
-/// keeps, and as much if it has heard the last one.
+/// three of these tellings, in any order, some of them again, the last one in any period: from then on it may use no
+/// more than the receiver keeps, and as much if it has heard the last telling of all.
 #[kani::proof]
 #[kani::unwind(4)]
 fn a_lease_ends_at_the_sender_first() {
     let any_period = |bound: u8| u32::from(kani::any_where(|period: &u8| *period < bound));
     let period = any_period(5);
+    let now = u32::from(kani::any_where(|now: &u8| u32::from(*now) <= period));
     let mut kept = Lease::of(below(3), any_period(3));
     let mut told = [kept; 3];
     for telling in &mut told[1..] {
@@ -56,9 +57,13 @@ fn a_lease_ends_at_the_sender_first() {
     }
     let mut used = Lease::of(0, 0);
     let mut knows_all = false;
-    for _ in 0..3 {
+    for hearing in 0..3 {
         let heard = any_period(3);
-        for (at, telling) in (0..3).zip(&told) {
+        for (at, telling) in (0..3).zip(&mut told) {
+            if hearing == 2 {
+                used.pass(now);
+                telling.pass(now);
+            }
             if at == heard {
                 used.hear(*telling);
             }

@@ -267,7 +267,16 @@ fn is_step(link: &Link, step: Step, next: &Link) -> bool {
                 let granted = before.granted.lasting(at);
                 (granted..=granted.max(heard(at))).contains(&after.granted.lasting(at))
             });
-            is_heard && (after.held, after.asked) == (before.held, before.asked) && rests.1
+            // What tells all that is kept for longer is taken over.
+            let told = grant.lease();
+            let covers = counts
+                && after.periods(&before).all(|at| told.lasting(at) >= before.granted.lasting(at));
+            let is_taken = !covers
+                || after.periods(&before).all(|at| after.granted.lasting(at) == told.lasting(at));
+            is_heard
+                && is_taken
+                && (after.held, after.asked) == (before.held, before.asked)
+                && rests.1
         }
         Step::Pass(_) => {
             before.sender_steps(&after, asked) && before.receiver_steps(&after, granted)

@@ -295,6 +295,50 @@ fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
     }
 }
 
+/// What it knew of the grant that is renewed has ended meanwhile.
+#[test]
+fn a_part_is_renewed_when_the_rest_has_ended() {
+    let (mut sender, FlowRequest { number, wanted, .. }) = asking();
+    let mut outputs = Outputs::of(0);
+    let grant = |part_until: u32| FlowGrant {
+        number,
+        flow: wanted,
+        until: NOW + 2,
+        part: Some(GrantedPart { flow: wanted / 4.0, until: NOW + part_until }),
+    };
+    sender.hear_grant(5, grant(4));
+    sender.take_in_requests(&mut outputs);
+    sender.period = NOW + 3;
+    sender.hear_grant(5, grant(9));
+    sender.ask_for_flows(&mut outputs);
+    assert_eq!(sender.held_flow(5).lease.end(), NOW + 9);
+    assert_eq!(sender.held_flow(5).flow, wanted / 4.0);
+}
+
+/// No process says so; whatever is granted, a robot sends no more than it plans and than is granted, for as long.
+#[test]
+fn malformed_grants_are_less_than_they_say() {
+    let used = |flow: f64, until: u32, part: Option<(f64, u32)>| {
+        let (mut sender, FlowRequest { number, wanted, .. }) = asking();
+        let mut outputs = Outputs::of(0);
+        let part = part.map(|(flow, until)| GrantedPart { flow, until });
+        sender.hear_grant(5, FlowGrant { number, flow, until, part });
+        sender.take_in_requests(&mut outputs);
+        [NOW, NOW + 4].map(|period| {
+            sender.period = period;
+            sender.ask_for_flows(&mut outputs);
+            sender.held_flow(5).flow / wanted
+        })
+    };
+    assert_eq!(used(f64::NAN, NOW + 9, None), [0.0, 0.0]);
+    assert_eq!(used(-0.1, NOW + 9, None), [0.0, 0.0]);
+    assert_eq!(used(9.0, NOW + 2, Some((f64::NAN, NOW + 9))), [1.0, 0.0]);
+    assert_eq!(used(9.0, NOW + 2, Some((-0.1, NOW + 9))), [1.0, 0.0]);
+    assert_eq!(used(9.0, NOW + 2, Some((9.0, NOW + 1))), [1.0, 0.0], "the part ends first");
+    assert_eq!(used(9.0, NOW + 2, Some((99.0, NOW + 9))), [1.0, 1.0], "the part is more than all");
+    assert_eq!(used(9.0, NOW - 9, None), [0.0, 0.0], "it ended long ago");
+}
+
 /// An access point takes everything, as long as it has been heard in two leases.
 #[test]
 fn packets_flow_to_an_access_point_that_is_not_heard_for_a_while() {
