@@ -100,7 +100,7 @@ impl Medium<Message, Point> for Scales {
 }
 
 /// The most messages and bytes that a robot may send in a control period, on average.
-const BUDGET: Budget = Budget { messages: 42.0, bytes: 2_400.0 };
+const BUDGET: Budget = Budget { messages: 42.0, bytes: 1_500.0 };
 
 struct Budget {
     messages: f64,

@@ -172,7 +172,8 @@ impl Robot {
 type Row = Transfer<Phase, MissionStep, Robot>;
 
 /// The mission ends.
-pub(super) fn end<A>(_: &A, robot: &Robot, _: &mut Effects) -> Ended {
+pub(super) fn end<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
+    effects.push(MissionEffect::ForgetRoute);
     let is_on_its_way = matches!(*robot.duty, Duty::Shifting(_));
     Ended { walk: robot.mission.walk().filter(|_| is_on_its_way) }
 }

@@ -20,7 +20,7 @@ pub(super) fn vote<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<Pat
     let Notice::Path(path) = robot.notice() else { return None };
     let agreement = robot.vote_on(path, robot.notice_id());
     effects.extend(robot.learns_who_leads());
-    effects.push(MissionEffect::Agree(Some(agreement)));
+    effects.extend([MissionEffect::Agree(Some(agreement)), MissionEffect::ForgetRoute]);
     Some(PathAgreement { path: Arc::clone(path) })
 }
 
@@ -62,7 +62,7 @@ pub(super) fn announce_advance(shift: &Shift, robot: &Robot, effects: &mut Effec
 /// The primary team is the active team again.
 pub(super) fn resume<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Advance {
     effects.extend(robot.learns_who_leads());
-    effects.push(MissionEffect::Restart);
+    effects.extend([MissionEffect::Restart, MissionEffect::ForgetRoute]);
     Advance { path: robot.mission.path().cloned(), in_vain: robot.learns_that_call_is_vain() }
 }
 
