@@ -68,7 +68,7 @@ vocabulary! {
         TeamJoined = "team joined",
         /// It is relieved, and leads.
         Released = "released",
-        /// It is within reach of the announced task, eq. (2).
+        /// It is within reach of the announced task, eq. (2), and services it from where it is.
         TaskReached = "task reached",
         /// The team is dissolved: its post becomes fixed where it is.
         Settled = "settled",
@@ -257,6 +257,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         last(Leading, On::Burdened, Bound),
         row(Bound, On::RelayResumed, Relay),
         row(Bound, On::LeafResumed, Leaf),
+        row(Bound, On::TaskReached, Leaf),
         row(Standby, On::PathJoined, Waiting),
         row(Relay, On::PathJoined, Waiting),
         row(Junction, On::PathJoined, Waiting),

@@ -50,10 +50,11 @@ pub mod mission {
         disengaged("elected", proposition("election_over"))
     }
 
-    /// The elected leader has past duties: L_b = 1. It calls once nodes that the last task has left without a branch
-    /// have had time to become redundant: they can come then.
+    /// The elected leader has past duties, L_b = 1, and cannot service its task from its post. It calls once nodes that
+    /// the last task has left without a branch have had time to become redundant: they can come then.
     pub fn bound() -> Guard {
-        disengaged("bound", proposition("bound") & !proposition("tree_settles"))
+        let free_to_call = !proposition("tree_settles") & !proposition("posted_near");
+        disengaged("bound", proposition("bound") & free_to_call)
     }
 
     /// A local stationary point (Sec. V-A2): the whole primary team has stood still for a while,
@@ -133,13 +134,14 @@ pub mod mission {
 
     /// The leader is near enough to its task, eq. (2): near enough for a replacer behind it to
     /// service it as well or, where it cannot get as near as that although its link is slack, or no robot is left
-    /// that could come, within δ.
+    /// that could come, within δ. One with past duties is if its post is: it keeps that, and services its task from it.
     pub fn reached() -> Guard {
         let near = variable("distance").at_most(variable("reach"));
         let stuck = variable("still").at_least(variable("window"));
         let within =
             variable("distance").at_most(variable("radius")).and(stuck).and(proposition("slack"));
-        disengaged("reached", proposition("leads").and(!proposition("bound")).and(near.or(within)))
+        let free = proposition("leads").and(!proposition("bound")).and(near.or(within));
+        disengaged("reached", free.or(proposition("posted_near")))
     }
 
     /// The newest notice says that the task is serviced.

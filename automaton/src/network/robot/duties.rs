@@ -438,6 +438,13 @@ fn service(leading: &Leading, robot: &Robot, _: &mut Effects) -> Leaf {
     Leaf(held)
 }
 
+/// It services its task from the post to which it is bound.
+fn service_from_post(bound: &Bound, robot: &Robot, _: &mut Effects) -> Leaf {
+    let Held { station, .. } = bound.0;
+    let post = Post { task: robot.current_task(), ..station.post };
+    Leaf(Held { station: Station { post, ..station }, ..bound.0 })
+}
+
 /// Its task is over: the post stays one of the tree as long as branches need it.
 fn discharge(leaf: &Leaf, _: &Robot, _: &mut Effects) -> Relay {
     let mut held = leaf.0;
@@ -594,6 +601,12 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             guards::leaf_resumed(),
             "keep the post",
             keep::<Bound, Leaf>,
+        ))
+        .carried_out(Transfer::new(
+            On::TaskReached,
+            guards::task_reached(),
+            "service the task from its post",
+            service_from_post,
         ))
         .carried_out(path_joined::<Standby>())
         .carried_out(path_joined::<Relay>())

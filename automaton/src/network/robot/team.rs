@@ -304,6 +304,22 @@ impl Robot {
         self.leads() && self.stretched && self.distance_to_task().is_some_and(within)
     }
 
+    /// Whether it is bound to a post from which it can service the task that it leads to. In the paper's order it is
+    /// released from its post all the same (Sec. V-A2).
+    pub(super) fn can_serve_from_post(&self) -> bool {
+        let Some(station) = self.duty.station().filter(|_| self.duty.is_bound()) else {
+            return false;
+        };
+        let is_near = |place: Point| {
+            let task = self.announcement().map(|announcement| announcement.position);
+            task.is_some_and(|task| (task - place).norm() <= self.site.settings.arrival_radius())
+        };
+        self.is_eager()
+            && station.post.task.is_none()
+            && is_near(station.reference)
+            && is_near(self.position)
+    }
+
     /// Whether the links of the robot carry no more, so that it stops where h_i ≤ 1 would break: a recruit makes them
     /// shorter. What is left of its reserve does not tell that. Moves leave flows as they are, and with them c_i; and
     /// where messages are lost, flows in use lag behind the plan for some periods, and leave no reserve.

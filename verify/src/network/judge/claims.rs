@@ -1,7 +1,8 @@
 //! Whether an event is true of the world at the instant for which it is recorded.
 
-use pleach_automaton::network::record::{MissionEvent, Snapshot};
+use pleach_automaton::network::record::{MissionEvent, PostView, Snapshot};
 use pleach_automaton::network::scenario::{Settings, Strategy};
+use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
 use super::ledger::{Ledger, Stage};
@@ -89,7 +90,8 @@ fn record(sentence: String) -> Result<(), Dispute> {
 pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
     match event {
         MissionEvent::TaskServiced { task, robot } => {
-            is_at_task(*task, *robot, scene.snapshot, scene.limits)
+            is_at_task(*task, *robot, scene.snapshot, scene.limits)?;
+            has_post_at_task(*task, *robot, ledger, scene)
         }
         MissionEvent::Stationary { .. } => stands_still(&ledger.primary_team, scene),
         MissionEvent::RecruitElected { robot, path, break_points } => {
@@ -121,6 +123,29 @@ pub(super) fn is_at_task(
     let sentence =
         || format!("robot {robot} services task {task} from {distance:.6}, more than {bound:.6}");
     at_most(distance, bound, &[robot], sentence)
+}
+
+/// Sec. V-A2: a leader that has yet to be released services its task only from the post that it keeps, within δ of it,
+/// and not in the paper's order.
+fn has_post_at_task(
+    task: usize,
+    robot: usize,
+    ledger: &Ledger,
+    scene: &Scene,
+) -> Result<(), Dispute> {
+    let settings = scene.limits.settings();
+    let (posts, place) = (&scene.snapshot.posts, scene.limits.tasks()[task]);
+    let is_near = || holds_post_within(settings.service_radius, posts, robot, place);
+    if !ledger.awaits_release || settings.strategy == Strategy::Eager && is_near() {
+        return Ok(());
+    }
+    let sentence =
+        format!("robot {robot} services task {task}, is bound to its post, and that is elsewhere");
+    Err(Dispute::of(Property::Events, &[robot], sentence))
+}
+
+fn holds_post_within(radius: f64, posts: &[PostView], robot: usize, place: Point) -> bool {
+    posts.iter().any(|post| post.holder == robot && (post.reference - place).norm() <= radius)
 }
 
 /// No member has got anywhere in the periods that end here.
@@ -339,4 +364,24 @@ fn at_most(
         return Ok(());
     }
     Err(Dispute::of(Property::Events, robots, sentence()).measuring(value, bound))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_task_within_reach_of_the_post_of_another_robot_is_not_serviced_from_the_own() {
+        let post = |holder: usize, x: f64| PostView {
+            reference: Point::new(x, 0.0),
+            holder,
+            task: None,
+            junction: false,
+        };
+        let posts = [post(1, 0.0), post(2, 1.0)];
+        let holds =
+            |robot: usize, x: f64| holds_post_within(0.2, &posts, robot, Point::new(x, 0.1));
+        assert!(holds(1, 0.1) && holds(2, 0.9));
+        assert!(!holds(1, 0.9) && !holds(1, 0.2) && !holds(3, 0.1));
+    }
 }

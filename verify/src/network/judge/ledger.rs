@@ -516,15 +516,16 @@ impl Ledger {
         Ok(())
     }
 
-    /// Eq. (2): the leader services its task.
+    /// Eq. (2): the leader services its task; one with past duties from its post, before anybody comes to release it.
     fn service(&mut self, task: usize, robot: usize) -> Result<(), Dispute> {
         self.expect_pursued(task, "a robot services")?;
-        if self.leader != Some(robot) || self.awaits_release {
+        let is_being_released = self.awaits_release && self.walk.is_some();
+        if self.leader != Some(robot) || is_being_released {
             let sentence = format!("robot {robot} services task {task}, and does not lead to it");
             return dispute(&[robot], sentence);
         }
         self.serviced.insert(task, robot);
-        (self.leader, self.calls, self.walk) = (None, false, None);
+        (self.leader, self.awaits_release, self.calls, self.walk) = (None, false, false, None);
         self.dismissed = std::mem::take(&mut self.primary_team);
         Ok(())
     }
@@ -599,5 +600,23 @@ mod tests {
         assert_eq!(ledger.clone().enter(&serviced), Ok(()));
         let found = ledger.enter(&withdrawn).expect_err("it is over");
         assert_eq!(found.sentence, "task 0 is taken back, and it is over");
+    }
+
+    /// From its post, as long as nobody is on the way to it.
+    #[test]
+    fn a_leader_that_awaits_its_release_may_service_its_task_until_a_recruit_comes() {
+        let mut ledger = Ledger::new(3);
+        let elected = MissionEvent::LeaderElected { task: 0, robot: 1, conflict: true };
+        for event in [MissionEvent::TaskAnnounced { task: 0 }, elected] {
+            assert_eq!(ledger.enter(&event), Ok(()));
+        }
+        let serviced = MissionEvent::TaskServiced { task: 0, robot: 1 };
+        let mut from_post = ledger.clone();
+        assert_eq!(from_post.enter(&serviced), Ok(()));
+        assert!(!from_post.awaits_release);
+        let recruited =
+            MissionEvent::RecruitElected { robot: 2, path: vec![2, 1], break_points: vec![2, 1] };
+        assert_eq!(ledger.enter(&recruited), Ok(()));
+        assert!(ledger.enter(&serviced).is_err());
     }
 }

@@ -3,8 +3,10 @@
 use pleach_discrete::network::{Activity, Phase};
 
 use super::super::super::beacon::TeamReport;
+use super::super::super::duty::Bound;
 use super::super::super::record::Outcome;
 use super::super::super::roll::{Absent, Wreck};
+use super::super::super::scenario::Strategy;
 use super::super::Label;
 use super::super::team::SATURATED;
 use super::*;
@@ -126,6 +128,39 @@ fn a_leader_on_whose_post_a_branch_depends_is_bound_to_it() {
         Activity::Leading,
         "it does not lead alone"
     );
+}
+
+/// A leader with past duties whose post is within δ of its task keeps it, and services the task from there; in the
+/// paper's order it is released first.
+#[test]
+fn a_bound_leader_services_a_task_within_reach_of_its_post() {
+    let served = |strategy: Strategy, task: Point, reference: Point, post: Post| {
+        let mut scenario = hall();
+        scenario.control.strategy = Some(strategy);
+        let mut robot = robot_of(&scenario);
+        robot.advances_to(task);
+        let held = Held { station: Station { post, reference }, left: None };
+        robot.duty = Current::new(Duty::Bound(Bound(held)));
+        robot.jump().expect("its guards have values");
+        let after = robot.duty.station().map(|station| (station.post.task, station.reference));
+        (robot.phase(), robot.duty.location(), after)
+    };
+    let near = east(SERVICE_RADIUS - LITTLE);
+    let serves = (Phase::Idle, Activity::Leaf, Some((Some(0), north(0.03))));
+    let calls = |task: Option<usize>, reference: Point| {
+        (Phase::RecruitElection, Activity::Bound, Some((task, reference)))
+    };
+    let post = fixed(20, 13);
+    assert_eq!(served(Strategy::Eager, east(0.1), north(0.03), post), serves);
+    assert_eq!(served(Strategy::Eager, near, HERE, post).0, Phase::Idle);
+    assert_eq!(
+        served(Strategy::Eager, east(SERVICE_RADIUS + LITTLE), HERE, post),
+        calls(None, HERE)
+    );
+    assert_eq!(served(Strategy::Eager, near, west(0.01), post), calls(None, west(0.01)));
+    assert_eq!(served(Strategy::Paper, east(0.1), HERE, post), calls(None, HERE));
+    let of_task = Post { task: Some(1), ..post };
+    assert_eq!(served(Strategy::Eager, east(0.1), HERE, of_task), calls(Some(1), HERE));
 }
 
 fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {
