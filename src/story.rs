@@ -93,10 +93,9 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
         MissionEvent::LeaderElected { task, robot, conflict } => (
             match conflict {
                 false => format!("robot {robot} is elected to lead to task {task}"),
-                true => format!(
-                    "robot {robot} is elected to lead to task {task} and must first be released \
-                     from its duties"
-                ),
+                true => {
+                    format!("robot {robot} is elected to lead to task {task} and has past duties")
+                }
             },
             moment(
                 Moment::Elected,

@@ -197,7 +197,7 @@ pub struct PostView {
 pub enum MissionEvent {
     /// A user announced a task.
     TaskAnnounced { task: usize },
-    /// A leader is elected (Algorithm 1); with a conflict, it must first be released (L_b = 1).
+    /// A leader is elected (Algorithm 1); with a conflict, it has past duties (L_b = 1).
     LeaderElected { task: usize, robot: usize, conflict: bool },
     /// The primary team is at a local stationary point; `robot` is p₁. The team is that at the end of the control
     /// period: empty if it has been dissolved by then.

@@ -39,9 +39,9 @@ const FEW_CORNERS: usize = 32;
 /// the straight line: corners farther away are looked at only when no shorter way is left.
 ///
 /// Without discs every corner of a shortest path is touched, by links and by the steps from the start and to
-/// the goal: others are not looked at, where [both ends allow it](FreeSpace::keep_paths_taut). As paths bend at corners
-/// of the planning set and may cut through the sight set, one that is left out can be shorter by a few τ. Where nothing
-/// is found, all corners are looked at.
+/// the goal: others are not looked at, where [both ends allow it](FreeSpace::keep_paths_taut). Paths bend at corners of
+/// the planning set and may cut through the sight set, so that a path that is left out can be shorter by a few τ. Where
+/// nothing is found, all corners are looked at.
 pub(super) fn shortest_path(
     space: &FreeSpace,
     from: Point,

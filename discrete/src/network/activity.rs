@@ -3,7 +3,7 @@
 //! Each location has one of the paper's roles ([`Role`]) and one way of moving. Redundant robots
 //! stand by; the tree consists of relays, junctions and leaves; the primary team follows its
 //! leader; the robots of the path Σ wait until it is their turn and then shift to the next place.
-//! An elected leader with past duties is bound until it is released (L_b = 1).
+//! An elected leader with past duties is bound until it is released (L_b = 1), or services its task from its post.
 
 use super::Role;
 use crate::{Row, TransitionTable, Urgency, vocabulary};
@@ -22,7 +22,7 @@ vocabulary! {
         Junction = "junction",
         /// It holds a fixed post from which it services a task.
         Leaf = "leaf",
-        /// It is elected leader, and holds a post until it is released from it (L_b = 1).
+        /// It is elected leader, and holds a post until it is released from it (L_b = 1), or services its task from there.
         Bound = "bound leader",
         /// It holds its post on the path Σ until it is relieved or its turn comes.
         Waiting = "waiting on the path",
@@ -68,7 +68,8 @@ vocabulary! {
         TeamJoined = "team joined",
         /// It is relieved, and leads.
         Released = "released",
-        /// It is within reach of the announced task, eq. (2), and services it from where it is.
+        /// It is within reach of the announced task, eq. (2), and services it: from where it is, or from the post to which
+        /// it is bound.
         TaskReached = "task reached",
         /// The team is dissolved: its post becomes fixed where it is.
         Settled = "settled",

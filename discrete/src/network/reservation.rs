@@ -164,3 +164,18 @@ where
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The receiver has begun again, and keeps less than the sender knows of.
+    #[test]
+    fn what_is_kept_for_longer_is_heard_beside_what_is_known() {
+        let mut known = Lease::of(5, 10);
+        known.hear(Lease::of(2, 14));
+        assert_eq!([10, 11, 14, 15].map(|period| known.lasting(period)), [5, 2, 2, 0]);
+        known.hear(Lease::of(2, 12));
+        assert_eq!(known.part(), Some((2, 14)), "that was told before");
+    }
+}

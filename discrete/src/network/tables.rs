@@ -18,7 +18,7 @@ vocabulary! {
         Announced = "announced",
         /// The leader election is over (Algorithm 1).
         Elected = "elected",
-        /// The elected leader has past duties: it calls for a recruit (L_b = 1).
+        /// The elected leader has past duties, and cannot service its task from its post: it calls for a recruit (L_b = 1).
         Bound = "bound",
         /// The primary team is at a local stationary point: p₁ calls for a recruit (L_b = 0).
         Trapped = "trapped",

@@ -134,7 +134,8 @@ pub mod mission {
 
     /// The leader is near enough to its task, eq. (2): near enough for a replacer behind it to
     /// service it as well or, where it cannot get as near as that although its link is slack, or no robot is left
-    /// that could come, within δ. One with past duties is if its post is: it keeps that, and services its task from it.
+    /// that could come, within δ. A leader with past duties keeps its post, and services its task from there if
+    /// it can.
     pub fn reached() -> Guard {
         let near = variable("distance").at_most(variable("reach"));
         let stuck = variable("still").at_least(variable("window"));

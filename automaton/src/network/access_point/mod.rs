@@ -327,6 +327,9 @@ impl AccessPoint {
 
     fn take_up(&mut self, bulletin: Bulletin) {
         let id = bulletin.id();
+        // The way to the caller is that of the newest notice.
+        self.route = None;
+        self.crossing.clear();
         if let Notice::Task(announcement) = &**bulletin.notice() {
             self.learn((id, announcement.clone()));
         }
@@ -334,8 +337,6 @@ impl AccessPoint {
             Notice::Task(_) | Notice::Call { .. } => {
                 self.election = Some(Arc::new(Election::new(id)));
                 self.election_rounds = 0;
-                self.route = None;
-                self.crossing.clear();
             }
             Notice::Path(_) => self.agreement = Some(Agreement::new(id)),
             Notice::Serviced { task } => {

@@ -162,7 +162,7 @@ facts! {
             leads: robot.duty.leads(),
             /// It is the elected leader and has yet to be released from past duties.
             bound: robot.duty.is_bound(),
-            /// It is the elected leader, has yet to be released from past duties, and can service its task from its post.
+            /// It is the elected leader with past duties, and can service its task from its post.
             posted_near: robot.can_serve_from_post(),
             /// It holds the post of a redundant robot.
             free: robot.duty.is_redundant(),

@@ -197,7 +197,7 @@ fn overtaken<A: DataOf<Mission>>() -> Row {
 }
 
 fn keep_up<A>(_: &A, _: &Robot, effects: &mut Effects) -> Idle {
-    effects.push(MissionEffect::KeepUp);
+    effects.extend([MissionEffect::KeepUp, MissionEffect::ForgetRoute]);
     Idle
 }
 

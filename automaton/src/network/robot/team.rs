@@ -58,7 +58,8 @@ pub(super) fn announce_service_again(
 }
 
 /// The task is serviced: the robot waits for the next one.
-pub(super) fn wait<A>(_: &A, _: &Robot, _: &mut Effects) -> Idle {
+pub(super) fn wait<A>(_: &A, _: &Robot, effects: &mut Effects) -> Idle {
+    effects.push(MissionEffect::ForgetRoute);
     Idle
 }
 
@@ -71,8 +72,8 @@ pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> End
              something stands in its way"
         ),
         (None, Some(slack)) => format!(
-            "the primary team stands still although robot {slack} has room on its link, or is near enough to the \
-             task: something stands in its way, and a recruit would not help"
+            "the primary team stands still although robot {slack} has room on its link: something \
+             stands in its way, and a recruit would not help"
         ),
         (None, None) if robot.is_pending() => format!(
             "robot {name} has joined the primary team but cannot reach the robot that it follows"
@@ -304,20 +305,19 @@ impl Robot {
         self.leads() && self.stretched && self.distance_to_task().is_some_and(within)
     }
 
-    /// Whether it is bound to a post from which it can service the task that it leads to. In the paper's order it is
+    /// Whether it is bound to a post from which it can service the task that it leads to: so near that a robot beside
+    /// it could service it as well or, where none is left that could come, within δ. In the paper's order it is
     /// released from its post all the same (Sec. V-A2).
     pub(super) fn can_serve_from_post(&self) -> bool {
-        let Some(station) = self.duty.station().filter(|_| self.duty.is_bound()) else {
-            return false;
-        };
-        let is_near = |place: Point| {
-            let task = self.announcement().map(|announcement| announcement.position);
-            task.is_some_and(|task| (task - place).norm() <= self.site.settings.arrival_radius())
-        };
-        self.is_eager()
-            && station.post.task.is_none()
-            && is_near(station.reference)
-            && is_near(self.position)
+        let bound = self.duty.station().filter(|_| self.is_eager() && self.duty.is_bound());
+        let (Some(station), Some(task)) = (bound, self.announcement()) else { return false };
+        let within = self.site.settings.arrival_radius();
+        let reach = if self.stretched { within } else { self.reach() };
+        let distance = |from: Point, to: Point| (to - from).norm();
+        station.post.task.is_none_or(|serviced| serviced == task.task)
+            && distance(station.reference, task.position) <= reach
+            && distance(self.position, task.position) <= within
+            && distance(self.position, station.reference) <= within
     }
 
     /// Whether the links of the robot carry no more, so that it stops where h_i ≤ 1 would break: a recruit makes them

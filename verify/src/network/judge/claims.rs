@@ -133,19 +133,19 @@ fn has_post_at_task(
     ledger: &Ledger,
     scene: &Scene,
 ) -> Result<(), Dispute> {
-    let settings = scene.limits.settings();
-    let (posts, place) = (&scene.snapshot.posts, scene.limits.tasks()[task]);
-    let is_near = || holds_post_within(settings.service_radius, posts, robot, place);
-    if !ledger.awaits_release || settings.strategy == Strategy::Eager && is_near() {
+    let place = scene.limits.tasks()[task];
+    let is_right = |post: &PostView| serves_from(post, robot, place, scene.limits.settings());
+    if !ledger.awaits_release || scene.snapshot.posts.iter().any(is_right) {
         return Ok(());
     }
-    let sentence =
-        format!("robot {robot} services task {task}, is bound to its post, and that is elsewhere");
+    let sentence = format!("robot {robot} services task {task}, and has yet to be released");
     Err(Dispute::of(Property::Events, &[robot], sentence))
 }
 
-fn holds_post_within(radius: f64, posts: &[PostView], robot: usize, place: Point) -> bool {
-    posts.iter().any(|post| post.holder == robot && (post.reference - place).norm() <= radius)
+/// Whether a robot that has yet to be released may service the task at `place` from this post.
+fn serves_from(post: &PostView, robot: usize, place: Point, settings: &Settings) -> bool {
+    let is_within = (post.reference - place).norm() <= settings.service_radius;
+    settings.strategy == Strategy::Eager && post.holder == robot && is_within
 }
 
 /// No member has got anywhere in the periods that end here.
@@ -369,19 +369,19 @@ fn at_most(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::sample::scenario;
 
     #[test]
-    fn a_task_within_reach_of_the_post_of_another_robot_is_not_serviced_from_the_own() {
-        let post = |holder: usize, x: f64| PostView {
-            reference: Point::new(x, 0.0),
-            holder,
-            task: None,
-            junction: false,
+    fn who_has_yet_to_be_released_services_a_task_within_reach_of_its_own_post_in_no_other_order() {
+        let serves = |strategy: Strategy, holder: usize, away: f64| {
+            let settings = Settings { strategy, ..scenario().site().settings.clone() };
+            let reference = Point::new(1.0 - away * settings.service_radius, 0.0);
+            let post = PostView { reference, holder, task: None, junction: false };
+            serves_from(&post, 1, Point::new(1.0, 0.0), &settings)
         };
-        let posts = [post(1, 0.0), post(2, 1.0)];
-        let holds =
-            |robot: usize, x: f64| holds_post_within(0.2, &posts, robot, Point::new(x, 0.1));
-        assert!(holds(1, 0.1) && holds(2, 0.9));
-        assert!(!holds(1, 0.9) && !holds(1, 0.2) && !holds(3, 0.1));
+        assert!(serves(Strategy::Eager, 1, 0.99));
+        assert!(!serves(Strategy::Eager, 1, 1.01), "it is too far away");
+        assert!(!serves(Strategy::Eager, 2, 0.99), "it is another robot's");
+        assert!(!serves(Strategy::Paper, 1, 0.99));
     }
 }

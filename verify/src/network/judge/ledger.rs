@@ -519,9 +519,12 @@ impl Ledger {
     /// Eq. (2): the leader services its task; one with past duties from its post, before anybody comes to release it.
     fn service(&mut self, task: usize, robot: usize) -> Result<(), Dispute> {
         self.expect_pursued(task, "a robot services")?;
-        let is_being_released = self.awaits_release && self.walk.is_some();
-        if self.leader != Some(robot) || is_being_released {
+        if self.leader != Some(robot) {
             let sentence = format!("robot {robot} services task {task}, and does not lead to it");
+            return dispute(&[robot], sentence);
+        }
+        if self.awaits_release && self.walk.is_some() {
+            let sentence = format!("robot {robot} services task {task}, and is being released");
             return dispute(&[robot], sentence);
         }
         self.serviced.insert(task, robot);

@@ -269,10 +269,12 @@ fn is_step(link: &Link, step: Step, next: &Link) -> bool {
             });
             // What tells all that is kept for longer is taken over.
             let told = grant.lease();
-            let covers = counts
-                && after.periods(&before).all(|at| told.lasting(at) >= before.granted.lasting(at));
-            let is_taken = !covers
-                || after.periods(&before).all(|at| after.granted.lasting(at) == told.lasting(at));
+            let ahead = ends(&told).into_iter().filter(|&end| end >= after.period);
+            let periods = || after.periods(&before).chain(ahead.clone());
+            let covers =
+                counts && periods().all(|at| told.lasting(at) >= before.granted.lasting(at));
+            let is_taken =
+                !covers || periods().all(|at| after.granted.lasting(at) == told.lasting(at));
             is_heard
                 && is_taken
                 && (after.held, after.asked) == (before.held, before.asked)

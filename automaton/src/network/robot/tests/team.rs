@@ -130,37 +130,50 @@ fn a_leader_on_whose_post_a_branch_depends_is_bound_to_it() {
     );
 }
 
-/// A leader with past duties whose post is within δ of its task keeps it, and services the task from there; in the
+/// A leader with past duties whose post is near enough to its task keeps it, and services the task from there; in the
 /// paper's order it is released first.
 #[test]
 fn a_bound_leader_services_a_task_within_reach_of_its_post() {
-    let served = |strategy: Strategy, task: Point, reference: Point, post: Post| {
+    let bound = |strategy: Strategy, task: Point, reference: Point, post: Post| {
         let mut scenario = hall();
         scenario.control.strategy = Some(strategy);
         let mut robot = robot_of(&scenario);
         robot.advances_to(task);
         let held = Held { station: Station { post, reference }, left: None };
         robot.duty = Current::new(Duty::Bound(Bound(held)));
+        robot
+    };
+    let jumped = |mut robot: Robot| {
         robot.jump().expect("its guards have values");
         let after = robot.duty.station().map(|station| (station.post.task, station.reference));
         (robot.phase(), robot.duty.location(), after)
     };
-    let near = east(SERVICE_RADIUS - LITTLE);
-    let serves = (Phase::Idle, Activity::Leaf, Some((Some(0), north(0.03))));
+    let post = fixed(20, 13);
+    let eager = |task: Point, reference: Point| bound(Strategy::Eager, task, reference, post);
+    let serves = |reference: Point| (Phase::Idle, Activity::Leaf, Some((Some(0), reference)));
     let calls = |task: Option<usize>, reference: Point| {
         (Phase::RecruitElection, Activity::Bound, Some((task, reference)))
     };
-    let post = fixed(20, 13);
-    assert_eq!(served(Strategy::Eager, east(0.1), north(0.03), post), serves);
-    assert_eq!(served(Strategy::Eager, near, HERE, post).0, Phase::Idle);
-    assert_eq!(
-        served(Strategy::Eager, east(SERVICE_RADIUS + LITTLE), HERE, post),
-        calls(None, HERE)
-    );
-    assert_eq!(served(Strategy::Eager, near, west(0.01), post), calls(None, west(0.01)));
-    assert_eq!(served(Strategy::Paper, east(0.1), HERE, post), calls(None, HERE));
-    let of_task = Post { task: Some(1), ..post };
-    assert_eq!(served(Strategy::Eager, east(0.1), HERE, of_task), calls(Some(1), HERE));
+    assert_eq!(jumped(eager(east(0.05), north(0.03))), serves(north(0.03)));
+    assert_eq!(jumped(bound(Strategy::Paper, east(0.05), HERE, post)), calls(None, HERE));
+    let of_task = |task: usize| Post { task: Some(task), ..post };
+    assert_eq!(jumped(bound(Strategy::Eager, east(0.05), HERE, of_task(0))), serves(HERE));
+    assert_eq!(jumped(bound(Strategy::Eager, east(0.05), HERE, of_task(1))), calls(Some(1), HERE));
+    // A robot beside it could not service the task: one is called for, if there may be one.
+    let reach = eager(east(0.05), HERE).reach();
+    let stretched = |mut robot: Robot| {
+        robot.stretched = true;
+        jumped(robot)
+    };
+    for (far, near) in [(reach + LITTLE, true), (SERVICE_RADIUS + LITTLE, false)] {
+        assert_eq!(jumped(eager(east(far), HERE)), calls(None, HERE));
+        let expected = if near { serves(HERE) } else { calls(None, HERE) };
+        assert_eq!(stretched(eager(east(far), HERE)), expected);
+    }
+    let near = east(SERVICE_RADIUS - LITTLE);
+    assert_eq!(stretched(eager(near, west(0.01))), calls(None, west(0.01)), "its post is not near");
+    let beside = east(SERVICE_RADIUS + LITTLE);
+    assert_eq!(stretched(eager(east(0.1), beside)), calls(None, beside), "it is not at its post");
 }
 
 fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {
