@@ -8,12 +8,14 @@
 
 use std::collections::BTreeSet;
 
+use pleach_continuous::Point;
 use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, Post, PostId};
 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
 use super::super::beacon::{Announcement, Notice, Reports};
+use super::super::duty::Station;
 use super::super::shared::renew;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -141,6 +143,23 @@ impl Robot {
         length <= self.build_length() * (1.0 + ROUNDING)
     }
 
+    /// Whether a link of the tree to this neighbour may be made: it is no longer than d_build, nor will it be when both
+    /// have come to their posts.
+    fn may_link(&self, neighbour: &Neighbour) -> bool {
+        let coming = |station: Option<&Station>, from: Point| {
+            let post = station.filter(|held| held.post.is_fixed()).map(|held| held.reference);
+            post.filter(|&place| self.is_apart(from, place))
+        };
+        let (here, there) = (self.position, neighbour.position());
+        let own = coming(self.duty.station(), here);
+        let other = coming(neighbour.station(), there);
+        let is_short = |from: Point, to: Point| self.may_build(self.site.walk(from, to));
+        self.may_build(self.walk_to(neighbour))
+            && own.is_none_or(|own| is_short(own, there))
+            && other.is_none_or(|other| is_short(here, other))
+            && own.zip(other).is_none_or(|(own, other)| is_short(own, other))
+    }
+
     /// Whether no robot that it hears holds the post that its own is attached to.
     pub(super) fn is_orphan(&self) -> bool {
         matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none()
@@ -210,7 +229,7 @@ impl Robot {
             if Some(anchor) != self.anchor()
                 && self.may_attach_to(node)
                 && leads_up(node)
-                && self.may_build(self.walk_to(node))
+                && self.may_link(node)
             {
                 farthest = Some(anchor);
             }
@@ -233,7 +252,7 @@ impl Robot {
                 && self.confirms(other)
                 && self.may_attach_to(node)
                 && node.post().is_none_or(Post::is_fixed)
-                && self.may_build(self.walk_to(node));
+                && self.may_link(node);
             self.anchor_of(node).filter(|_| is_shorter).map(|anchor| (other.hops(), anchor))
         });
         nodes.min_by_key(|&(hops, _)| hops).map(|(_, anchor)| anchor)
@@ -284,7 +303,7 @@ impl Robot {
                 && self.may_attach_to(neighbour)
                 && !lineage.contains(own)
                 && avoided.is_none_or(|avoided| !lineage.contains(avoided))
-                && self.may_build(self.walk_to(neighbour))
+                && self.may_link(neighbour)
                 && self.confirms(lineage)
             {
                 best = Some((hops, neighbour.reliability, anchor));

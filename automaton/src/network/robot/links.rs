@@ -107,6 +107,32 @@ impl Robot {
         node.is_some_and(|node| self.walk_to(node) <= self.hard_length())
     }
 
+    /// Whether it could take this post on Σ where it is: the links to its parent and to the children that it hears are
+    /// not too long. Who is on the way to a post there counts as its holder.
+    pub(super) fn links_hold_at(&self, post: Post) -> bool {
+        let coming = |node: &Neighbour| match node.beacon.duty {
+            Some(Duty::Shifting(Shifting { place, .. })) => {
+                let hop = self.mission.path().and_then(|path| path.hops.get(place + 1));
+                hop.map(|hop| hop.post)
+            }
+            _ => node.post().copied(),
+        };
+        let is_near = |node: &Neighbour| self.walk_to(node) <= self.hard_length();
+        let holds = |node: &Neighbour, id: PostId| coming(node).is_some_and(|held| held.id == id);
+        let is_child =
+            |node: &&Neighbour| coming(node).is_some_and(|held| held.is_child_of(post.id));
+        let reaches_parent = match post.parent {
+            Some(Anchor::Access(access)) => {
+                self.distance_to_access(access, self.position) <= self.hard_length()
+            }
+            Some(Anchor::Post(id)) => {
+                self.neighbours.iter().any(|node| holds(node, id) && is_near(node))
+            }
+            None => true,
+        };
+        reaches_parent && self.neighbours.iter().filter(is_child).all(is_near)
+    }
+
     pub(super) fn named_parent(&self) -> Option<NodeId> {
         if let Duty::Shifting(Shifting { place, .. }) = *self.duty {
             return self.parent_under_way(place);

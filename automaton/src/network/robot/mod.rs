@@ -209,7 +209,7 @@ pub struct Robot {
     /// The duty that it takes over in this jump, and from which robot.
     taking_over: Option<(Duty, NodeId)>,
     /// The robots with which it has exchanged duties since this notice.
-    past_partners: Option<(NoticeId, IdSet)>,
+    past_partners: Option<(NoticeId, Vec<NodeId>)>,
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
 

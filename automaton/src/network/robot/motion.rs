@@ -66,7 +66,12 @@ impl Robot {
 
     /// Whether the robot has not settled at `reference`: a move there may end as far off as it strays.
     pub(super) fn is_off(&self, reference: Point) -> bool {
-        (reference - self.position).norm() > SETTLED * self.clearance() + self.stray()
+        self.is_apart(self.position, reference)
+    }
+
+    /// Whether a robot here has not settled there.
+    pub(super) fn is_apart(&self, here: Point, there: Point) -> bool {
+        (there - here).norm() > SETTLED * self.clearance() + self.stray()
     }
 
     /// Whether the robot may move in this period.
@@ -83,12 +88,12 @@ impl Robot {
         if !near(self.position, hop.place.reference) {
             return self.queues_behind_arrived();
         }
-        let Some(task) = hop.post.task.and_then(|task| self.task_position(task)) else {
-            return true;
-        };
-        let way = self.site.free_space.geodesic(self.position, hop.place.reference);
-        near(self.position, task)
-            && way.is_some_and(|way| way.waypoints.iter().all(|&corner| near(corner, task)))
+        let services = hop.post.task.and_then(|task| self.task_position(task)).is_none_or(|task| {
+            let way = self.site.free_space.geodesic(self.position, hop.place.reference);
+            near(self.position, task)
+                && way.is_some_and(|way| way.waypoints.iter().all(|&corner| near(corner, task)))
+        });
+        services && (self.links_hold_at(hop.post) || !self.is_off(hop.place.reference))
     }
 
     /// Whether the robot stands right behind the next member of its subgroup, which has arrived:

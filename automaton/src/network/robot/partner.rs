@@ -6,14 +6,14 @@
 //! robot sees that, it takes the mover's duty: the [`Offers`] of the two. From the offer to the end
 //! neither takes a step of the mission that changes a duty, so that what is taken over is what was offered. Between
 //! the two takings both hold the duty of the parked robot, and nobody that of the mover. With every exchange the way
-//! that remains gets shorter, and two members of the team exchange duties once at most until a newer notice is heard:
-//! exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
-//! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner somewhat
-//! farther from its goal too, but none with which it has exchanged duties since the newest notice.
+//! that remains gets shorter, and two members of the team exchange duties a few times at most until a newer notice is
+//! heard: exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
+//! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner that is somewhat
+//! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
-use pleach_discrete::network::{Agreement, IdSet, NodeId, Offer, Phase, Post, PostKind, Reply};
+use pleach_discrete::network::{Agreement, NodeId, Offer, Phase, Post, PostKind, Reply};
 
 use super::super::beacon::{Announced, TeamReport};
 use super::super::duty::{Duty, Shifting};
@@ -29,6 +29,12 @@ const PATIENCE: u32 = 2;
 /// Control periods without progress after which it takes a partner that is not nearer: one that
 /// leaves no room to pass, at a corner say.
 pub(super) const LAST_RESORT: u32 = 10;
+/// Then it takes one up to this many ρ away, too: the two may stand still without touching each other, in the bend of
+/// a corridor or beside a third robot, and none passes between them.
+const WEDGE: f64 = 4.0;
+/// How often two members of the team exchange duties at most until a newer notice is heard: where others have
+/// exchanged duties meanwhile, the order of the two may be wrong again.
+const MOST_IN_TEAM: usize = 3;
 /// How much farther from the goal, in ρ, such a partner may be.
 const CONCESSION: f64 = 4.0;
 
@@ -47,15 +53,21 @@ impl Robot {
             return;
         }
         let Some(goal) = self.goal() else { return };
-        let gain = if self.still_periods < LAST_RESORT { GAIN } else { -CONCESSION };
+        let (contact, gain) = match self.still_periods < LAST_RESORT {
+            true => (CONTACT, GAIN),
+            false => (WEDGE, -CONCESSION),
+        };
         let own_way = self.site.distance(self.position, goal);
         let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
         for neighbour in &self.neighbours {
-            if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
+            if neighbour.distance <= contact * self.clearance() && self.could_replace(neighbour) {
                 let way = self.site.distance(neighbour.position(), goal);
-                let is_return = self.has_exchanged_with(neighbour.id())
-                    && (way >= own_way || self.is_of_team(neighbour));
+                let is_return = match self.exchanges_with(neighbour.id()) {
+                    0 => false,
+                    times if self.is_of_team(neighbour) => times >= MOST_IN_TEAM,
+                    _ => way >= own_way,
+                };
                 if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
                     (nearest, partner) = (way, Some(neighbour.id()));
                 }
@@ -64,21 +76,23 @@ impl Robot {
         self.partner = partner;
     }
 
-    /// Whether it has exchanged duties with this robot since the newest notice.
-    fn has_exchanged_with(&self, robot: NodeId) -> bool {
-        self.partners_since_notice().is_some_and(|partners| partners.contains(robot))
+    /// How often it has exchanged duties with this robot since the newest notice.
+    fn exchanges_with(&self, robot: NodeId) -> usize {
+        self.partners_since_notice().iter().filter(|&&partner| partner == robot).count()
     }
 
-    /// The robots with which it has exchanged duties since the newest notice, if there are any.
-    pub(super) fn partners_since_notice(&self) -> Option<&IdSet> {
-        let (notice, partners) = self.past_partners.as_ref()?;
-        (*notice == self.notice_id()).then_some(partners)
+    /// The robots with which it has exchanged duties since the newest notice, one after the other.
+    pub(super) fn partners_since_notice(&self) -> &[NodeId] {
+        match &self.past_partners {
+            Some((notice, partners)) if *notice == self.notice_id() => partners,
+            _ => &[],
+        }
     }
 
     /// It has exchanged duties with this robot.
     pub(super) fn remember_partner(&mut self, partner: NodeId) {
-        let mut partners = self.partners_since_notice().cloned().unwrap_or_default();
-        partners.insert(partner);
+        let mut partners = self.partners_since_notice().to_vec();
+        partners.push(partner);
         self.past_partners = Some((self.notice_id(), partners));
     }
 
@@ -184,14 +198,14 @@ impl Robot {
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
             && self.offer_to_answer().is_none_or(|(mover, offer)| {
-                self.touches(mover) && self.pursues_the_same(mover, offer)
+                self.is_beside(mover) && self.pursues_the_same(mover, offer)
             })
     }
 
-    /// Whether it still touches the mover: it may have moved since that has made its offer.
-    fn touches(&self, mover: NodeId) -> bool {
-        let contact = CONTACT * self.clearance();
-        self.neighbour(mover).is_some_and(|mover| self.site.may_touch(mover.distance, contact))
+    /// Whether it is still as near to the mover as partners are: it may have moved since that has made its offer.
+    fn is_beside(&self, mover: NodeId) -> bool {
+        let most = WEDGE * self.clearance();
+        self.neighbour(mover).is_some_and(|mover| self.site.may_touch(mover.distance, most))
     }
 
     /// Whether the mover goes by the same announcement, and the same Σ if one of the duties that they

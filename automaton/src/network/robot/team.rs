@@ -305,19 +305,17 @@ impl Robot {
         self.leads() && self.stretched && self.distance_to_task().is_some_and(within)
     }
 
-    /// Whether it is bound to a post from which it can service the task that it leads to: so near that a robot beside
-    /// it could service it as well or, where none is left that could come, within δ. In the paper's order it is
+    /// Whether it is bound to a post from which it can service the task that it leads to. In the paper's order it is
     /// released from its post all the same (Sec. V-A2).
     pub(super) fn can_serve_from_post(&self) -> bool {
         let bound = self.duty.station().filter(|_| self.is_eager() && self.duty.is_bound());
         let (Some(station), Some(task)) = (bound, self.announcement()) else { return false };
         let within = self.site.settings.arrival_radius();
-        let reach = if self.stretched { within } else { self.reach() };
-        let distance = |from: Point, to: Point| (to - from).norm();
+        let are_near = |one: Point, other: Point| (one - other).norm() <= within;
         station.post.task.is_none_or(|serviced| serviced == task.task)
-            && distance(station.reference, task.position) <= reach
-            && distance(self.position, task.position) <= within
-            && distance(self.position, station.reference) <= within
+            && are_near(station.reference, task.position)
+            && are_near(self.position, task.position)
+            && are_near(self.position, station.reference)
     }
 
     /// Whether the links of the robot carry no more, so that it stops where h_i ≤ 1 would break: a recruit makes them

@@ -13,7 +13,7 @@ use crate::network::property::Property;
 use crate::network::tree;
 
 /// Robots exchange duties when they touch: at most this many ρ apart (they keep 2ρ).
-const CONTACT: f64 = 2.6;
+const CONTACT: f64 = 4.0;
 /// Rounds of beacons that an exchange of duties takes: offer, reply, and the two duties taken.
 const EXCHANGE_ROUNDS: usize = Settings::ROUNDS_OF_AN_EXCHANGE - 1;
 /// A team is at a stationary point when every member is where it was before, within this share of ρ or σ,

@@ -141,6 +141,7 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     let near = |away: f64| {
         let mut robot = shifting(0.5, false);
         robot.position = east(1.0 - away);
+        robot.hears(beacon(4, HERE, fixed(13, 14), &[13, 14]));
         robot.has_arrived()
     };
     assert!(near(SERVICE_RADIUS - LITTLE) && !near(SERVICE_RADIUS + LITTLE));
@@ -149,6 +150,45 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     let mut last = shifting(queue - LITTLE, true);
     last.duty = Current::new(Duty::Shifting(Shifting { place: 2, left: None }));
     assert!(!last.has_arrived(), "the break point at the end is of another subgroup");
+}
+
+/// A robot that comes from the far side takes the post over where its links hold, or at the post itself.
+#[test]
+fn a_robot_has_arrived_where_the_links_of_the_post_hold() {
+    let hard = robot().hard_length();
+    let away = SERVICE_RADIUS / 2.0;
+    let arrived = |parent: Option<f64>, child: f64, away: f64| {
+        let mut robot = shifting(0.5, false);
+        let place = east(1.0);
+        robot.position = place + Vector::new(away, 0.0);
+        let parent = parent.map(|length| robot.position - Vector::new(length, 0.0));
+        let child = robot.position - Vector::new(0.0, child);
+        let known = parent.map(|at| beacon(4, at, fixed(13, 14), &[13, 14]));
+        known.into_iter().for_each(|beacon| robot.hears(beacon));
+        robot.hears(beacon(5, child, fixed(20, 1), &[20, 1, 13, 14]));
+        robot.has_arrived()
+    };
+    assert!(arrived(Some(hard - LITTLE), 1.0, away));
+    assert!(!arrived(Some(hard + LITTLE), 1.0, away), "its parent is too far away");
+    assert!(!arrived(None, 1.0, away), "its parent is not heard");
+    assert!(arrived(Some(1.0), hard - LITTLE, away) && !arrived(Some(1.0), hard + LITTLE, away));
+    assert!(arrived(Some(hard + LITTLE), 1.0, 0.0), "it gets no nearer");
+    // The next robot of its subgroup is on its way to the post that bears the own one.
+    let behind = |away: f64| {
+        let mut robot = shifting(0.0, false);
+        let Mission::Shift(shift) = &*robot.mission else { panic!("it walks") };
+        let mut shift = shift.clone();
+        let mut path = (*shift.path).clone();
+        path.hops[1].post = fixed(1, 2);
+        shift.path = Arc::new(path);
+        robot.mission = Current::new(Mission::Shift(shift));
+        robot.position = east(1.0 + SERVICE_RADIUS / 2.0);
+        let ahead = Duty::Shifting(Shifting { place: 1, left: None });
+        let at = robot.position + Vector::new(away, 0.0);
+        robot.hears(Beacon { duty: Some(ahead), ..Beacon::silent(1, at) });
+        robot.has_arrived()
+    };
+    assert!(behind(hard - LITTLE) && !behind(hard + LITTLE));
 }
 
 /// Where Σ leads over two access points the shortest way may be out of reach of both.

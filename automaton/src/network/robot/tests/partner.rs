@@ -72,6 +72,12 @@ fn partners_are_in_contact() {
         robot.hears(parked(away));
         assert_eq!(partner(&mut robot), expected, "{away}");
     }
+    let at_last = |away: f64| {
+        let mut robot = stuck(10);
+        robot.hears(parked(away * CLEARANCE));
+        partner(&mut robot)
+    };
+    assert_eq!((at_last(4.0 - LITTLE), at_last(4.0 + LITTLE)), (Some(1), None), "a last resort");
 }
 
 /// The goal is far to the east, so that a robot in the north is nearer by as much as it is farther east.
@@ -264,7 +270,7 @@ fn a_member_that_stands_behind_is_a_partner() {
             near_other_tree,
         })
     };
-    let finds = |own: u32, other: u32, still: u32| {
+    let beside = |own: u32, other: u32, still: u32| {
         let mut robot = stuck(5);
         robot.team = report(own, 5);
         let team = report(other, still);
@@ -272,9 +278,16 @@ fn a_member_that_stands_behind_is_a_partner() {
             team,
             ..beacon(1, east(BESIDE), primary(31, Some(30), 13), &[31, 13])
         });
+        robot
+    };
+    let finds = |own: u32, other: u32, still: u32| partner(&mut beside(own, other, still));
+    let again = |times: usize| {
+        let mut robot = beside(1, 2, 4);
+        (0..times).for_each(|_| robot.remember_partner(1));
         partner(&mut robot)
     };
     assert_eq!(finds(1, 2, 4), Some(1));
+    assert_eq!([1, 2, 3].map(|times| again(times)), [Some(1), Some(1), None]);
     assert_eq!(finds(1, 2, 3), None, "it may go on");
     assert_eq!((finds(2, 1, 9), finds(2, 2, 9)), (None, None), "it is ahead, or level");
     let makes_room = |own: u32, still: u32| {
@@ -310,7 +323,7 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
     };
     assert!(relieved(&|_, _| {}));
     let away = |ways: f64| relieved(&|_, mover| mover.position = west(ways * CLEARANCE));
-    assert!(away(2.6 - LITTLE) && !away(2.6 + LITTLE), "they touch no more");
+    assert!(away(4.0 - LITTLE) && !away(4.0 + LITTLE), "it is too far away");
     assert!(!relieved(&|_, mover| mover.announced = None), "it goes by no announcement");
     assert!(!relieved(&|robot, _| robot.announced = None), "this one goes by none");
     assert!(!relieved(&|robot, _| robot.facts.path_announced = true), "it has yet to learn Σ");
