@@ -143,8 +143,8 @@ impl Robot {
         length <= self.build_length() * (1.0 + ROUNDING)
     }
 
-    /// Whether a link of the tree to this neighbour may be made: it is no longer than d_build, nor will it be when both
-    /// have come to their posts.
+    /// Whether a link of the tree to this neighbour may be made: it is no longer than d_build, and will be no longer than
+    /// d_hard when both have come to their posts.
     fn may_link(&self, neighbour: &Neighbour) -> bool {
         let coming = |station: Option<&Station>, from: Point| {
             let post = station.filter(|held| held.post.is_fixed()).map(|held| held.reference);
@@ -153,11 +153,11 @@ impl Robot {
         let (here, there) = (self.position, neighbour.position());
         let own = coming(self.duty.station(), here);
         let other = coming(neighbour.station(), there);
-        let is_short = |from: Point, to: Point| self.may_build(self.site.walk(from, to));
+        let may_last = |from: Point, to: Point| self.site.walk(from, to) <= self.hard_length();
         self.may_build(self.walk_to(neighbour))
-            && own.is_none_or(|own| is_short(own, there))
-            && other.is_none_or(|other| is_short(here, other))
-            && own.zip(other).is_none_or(|(own, other)| is_short(own, other))
+            && own.is_none_or(|own| may_last(own, there))
+            && other.is_none_or(|other| may_last(here, other))
+            && own.zip(other).is_none_or(|(own, other)| may_last(own, other))
     }
 
     /// Whether no robot that it hears holds the post that its own is attached to.

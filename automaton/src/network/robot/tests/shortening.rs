@@ -47,18 +47,19 @@ fn a_fixed_post_is_attached_past_its_parent_where_a_link_of_d_build_reaches() {
 
 /// Robots on their way to their posts are nearer to each other than they will be.
 #[test]
-fn a_link_is_as_long_as_it_will_be_when_both_are_at_their_posts() {
-    let build = robot().build_length();
+fn a_link_is_as_long_as_it_may_get_when_both_are_at_their_posts() {
+    let [build, hard] = [robot().build_length(), robot().hard_length()];
     let chosen = |own: f64, other: f64| {
         let mut robot = holder(Strategy::Eager);
         robot.duty = Current::new(holding(fixed(30, 13), east(own)));
         let duty = Some(holding(fixed(14, 15), west(build - 0.1 + other)));
         choice(robot, [parent(), Beacon { duty, ..grandparent(build - 0.1) }])
     };
-    assert_eq!((chosen(0.0, 0.0), chosen(0.1 - LITTLE, 0.0)), (at(14), at(14)));
-    assert_eq!((chosen(0.0, 0.1 - LITTLE), chosen(0.05, 0.05 - LITTLE)), (at(14), at(14)));
-    assert_eq!((chosen(0.1 + LITTLE, 0.0), chosen(0.0, 0.1 + LITTLE)), (None, None));
-    assert_eq!(chosen(0.06, 0.06), None, "both are on their way");
+    let most = hard - build + 0.1;
+    assert_eq!((chosen(0.0, 0.0), chosen(most - LITTLE, 0.0)), (at(14), at(14)));
+    assert_eq!((chosen(0.0, most - LITTLE), chosen(0.1, most - 0.1 - LITTLE)), (at(14), at(14)));
+    assert_eq!((chosen(most + LITTLE, 0.0), chosen(0.0, most + LITTLE)), (None, None));
+    assert_eq!(chosen(0.1, most - 0.1 + LITTLE), None, "both are on their way");
 }
 
 #[test]
