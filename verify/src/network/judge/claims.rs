@@ -374,7 +374,7 @@ mod tests {
     #[test]
     fn who_has_yet_to_be_released_services_a_task_within_reach_of_its_own_post_in_no_other_order() {
         let serves = |strategy: Strategy, holder: usize, away: f64| {
-            let settings = Settings { strategy, ..scenario().site().settings.clone() };
+            let settings = Settings { strategy, ..scenario().site().settings };
             let reference = Point::new(1.0 - away * settings.service_radius, 0.0);
             let post = PostView { reference, holder, task: None, junction: false };
             serves_from(&post, 1, Point::new(1.0, 0.0), &settings)

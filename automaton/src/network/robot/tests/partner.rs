@@ -287,7 +287,7 @@ fn a_member_that_stands_behind_is_a_partner() {
         partner(&mut robot)
     };
     assert_eq!(finds(1, 2, 4), Some(1));
-    assert_eq!([1, 2, 3].map(|times| again(times)), [Some(1), Some(1), None]);
+    assert_eq!([1, 2, 3].map(again), [Some(1), Some(1), None]);
     assert_eq!(finds(1, 2, 3), None, "it may go on");
     assert_eq!((finds(2, 1, 9), finds(2, 2, 9)), (None, None), "it is ahead, or level");
     let makes_room = |own: u32, still: u32| {
