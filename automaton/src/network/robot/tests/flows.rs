@@ -295,24 +295,27 @@ fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
     }
 }
 
-/// What it knew of the grant that is renewed has ended meanwhile.
+/// What it knew of the grant that is renewed has ended meanwhile, so that there is room for another part; the receiver
+/// has begun again, and keeps less for longer.
 #[test]
 fn a_part_is_renewed_when_the_rest_has_ended() {
     let (mut sender, FlowRequest { number, wanted, .. }) = asking();
     let mut outputs = Outputs::of(0);
-    let grant = |part_until: u32| FlowGrant {
+    let grant = |share: f64, part_until: u32| FlowGrant {
         number,
         flow: wanted,
         until: NOW + 2,
-        part: Some(GrantedPart { flow: wanted / 4.0, until: NOW + part_until }),
+        part: Some(GrantedPart { flow: share * wanted, until: NOW + part_until }),
     };
-    sender.hear_grant(5, grant(4));
+    sender.hear_grant(5, grant(0.25, 4));
     sender.take_in_requests(&mut outputs);
     sender.period = NOW + 3;
-    sender.hear_grant(5, grant(9));
-    sender.ask_for_flows(&mut outputs);
-    assert_eq!(sender.held_flow(5).lease.end(), NOW + 9);
-    assert_eq!(sender.held_flow(5).flow, wanted / 4.0);
+    sender.hear_grant(5, grant(0.125, 9));
+    for (later, share) in [(3, 0.25), (4, 0.25), (5, 0.125), (9, 0.125), (10, 0.0)] {
+        sender.period = NOW + later;
+        sender.ask_for_flows(&mut outputs);
+        assert_eq!(sender.held_flow(5).flow, share * wanted, "{later} periods later");
+    }
 }
 
 /// No process says so; whatever is granted, a robot sends no more than it plans and than is granted, for as long.
