@@ -22,6 +22,7 @@ fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
         (shipped("too-few"), Outcome::InsufficientRobots, "tried"),
         (kept("given-up/two-clusters.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("given-up/wrong-order.toml"), Outcome::Blocked, "blocked"),
+        (kept("given-up/free-too-late.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("saturated.toml"), Outcome::Blocked, "tried"),
         (kept("given-up/body-in-corridor.toml"), Outcome::Blocked, "blocked"),
         (kept("given-up/flows-in-a-circle.toml"), Outcome::Blocked, "blocked"),

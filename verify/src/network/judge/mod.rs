@@ -130,6 +130,8 @@ pub struct Judge<'a> {
     tried: Tried,
     scenario: ValidScenario,
     previous: Option<Snapshot>,
+    /// The snapshot before robots knew that the mission has ended, if they do.
+    undecided: Option<Snapshot>,
     recent: VecDeque<Vec<Point>>,
     /// Where each robot went last: one that has given up goes nowhere.
     headings: Vec<Option<Point>>,
@@ -154,6 +156,7 @@ impl<'a> Judge<'a> {
             tried: Tried::default(),
             scenario: scenario.clone(),
             previous: None,
+            undecided: None,
             recent: VecDeque::with_capacity(RECENT + 1),
             headings: vec![None; robots],
             bodies: Vec::new(),
@@ -198,7 +201,11 @@ impl<'a> Judge<'a> {
         for (heading, shown) in self.headings.iter_mut().zip(&snapshot.robots) {
             *heading = shown.target.or(*heading);
         }
-        self.previous = Some(snapshot.clone());
+        let before = self.previous.replace(snapshot.clone());
+        self.undecided = match snapshot.phase {
+            Phase::Ended => self.undecided.take().or(before),
+            _ => None,
+        };
         Ok(())
     }
 
@@ -420,7 +427,18 @@ impl<'a> Judge<'a> {
 
     /// The call for a recruit with which the mission ended, if it ended with one.
     fn last_trial(&self) -> Option<Trial> {
-        self.tried.trial(&self.ledger, self.previous.as_ref()?, Then::Ended)
+        self.tried.trial(&self.ledger, self.instant_of_last_call()?, Then::Ended)
+    }
+
+    /// The instant by which it is judged whether a robot could have come: the last one or, if a robot has become
+    /// redundant since robots knew that the mission has ended, the one before they did.
+    fn instant_of_last_call(&self) -> Option<&Snapshot> {
+        let last = self.previous.as_ref()?;
+        let is_late = |before: &&Snapshot| {
+            let mut roles = before.roles.iter().zip(&last.roles);
+            roles.any(|(&was, &is)| was != Role::Redundant && is == Role::Redundant)
+        };
+        self.undecided.as_ref().filter(is_late).or(Some(last))
     }
 
     /// Whether the election was repeated among robots of other trees, and has no leader.
@@ -439,7 +457,7 @@ impl<'a> Judge<'a> {
         if end.outcome != Outcome::InsufficientRobots {
             return None;
         }
-        let overlooked = self.tried.overlooked(&self.ledger, self.previous.as_ref()?)?;
+        let overlooked = self.tried.overlooked(&self.ledger, self.instant_of_last_call()?)?;
         let announced = self.ledger.task().map_or(0, |task| task + 1);
         match verdicts::missing(&self.scenario, announced) {
             Some(_) => None,
