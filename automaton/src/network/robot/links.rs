@@ -107,8 +107,9 @@ impl Robot {
         node.is_some_and(|node| self.walk_to(node) <= self.hard_length())
     }
 
-    /// Whether it could take this post on Σ where it is: the links to its parent and to the children that it hears are
-    /// not too long. Who is on the way to a post there counts as its holder.
+    /// Whether the robot could take this post on Σ where it is: the links to the parent of the post and to those of its
+    /// children that the robot hears are not too long. A robot on its way along Σ counts as the holder of the post that
+    /// it goes to.
     pub(super) fn links_hold_at(&self, post: Post) -> bool {
         let coming = |node: &Neighbour| match node.beacon.duty {
             Some(Duty::Shifting(Shifting { place, .. })) => {

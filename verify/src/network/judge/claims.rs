@@ -12,8 +12,10 @@ use crate::network::limits::{Limits, SLACK};
 use crate::network::property::Property;
 use crate::network::tree;
 
-/// Robots exchange duties when they touch: at most this many ρ apart (they keep 2ρ).
-const CONTACT: f64 = 4.0;
+/// Robots touch that are at most this many ρ apart (they keep 2ρ).
+const CONTACT: f64 = 2.6;
+/// Robots that exchange duties are at most this many ρ apart: no third one passes between them.
+const BESIDE: f64 = 4.0;
 /// Rounds of beacons that an exchange of duties takes: offer, reply, and the two duties taken.
 const EXCHANGE_ROUNDS: usize = Settings::ROUNDS_OF_AN_EXCHANGE - 1;
 /// A team is at a stationary point when every member is where it was before, within this share of ρ or σ,
@@ -103,7 +105,7 @@ pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> R
         }
         MissionEvent::DutiesExchanged { mover, parked } => {
             goes_on(*mover, ledger, scene)?;
-            touch(*mover, *parked, scene)
+            are_beside(*mover, *parked, scene)
         }
         MissionEvent::Reattached { robot, parent } => is_attached(*robot, *parent, ledger, scene),
         MissionEvent::RouteInfeasible { robot } => is_infeasible(*robot, scene),
@@ -290,14 +292,14 @@ fn goes_on(mover: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> 
     Err(Dispute::of(Property::Events, &[mover], sentence))
 }
 
-fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
+fn are_beside(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
     let positions = &scene.snapshot.positions;
     let distance = (positions[mover] - positions[parked]).norm();
     let settings = scene.limits.settings();
     // From the offer to the end the mover may go on, if that takes more than one period.
     let periods = EXCHANGE_ROUNDS.div_ceil(settings.rounds_per_period.max(1));
     let way = periods.saturating_sub(1) as f64 * settings.step_radius;
-    let bound = CONTACT * settings.planning_clearance() + way;
+    let bound = BESIDE * settings.planning_clearance() + way;
     at_most(distance, bound, &[mover, parked], || {
         format!(
             "robots {mover} and {parked} exchange duties at a distance of {distance:.6}, more than \
