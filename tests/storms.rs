@@ -11,11 +11,13 @@ use pleach::automaton::network::{Crash, FaultyNode, Message, Network, NodeFaults
 use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
 use pleach::continuous::Point;
+use pleach::scenario_file;
 use pleach::verify::network::storm::{
     Judge, Kind, Storm, Verdict, allowing_for, draw, judged_run, network,
 };
 use pleach::verify::network::{Property, Violation};
 use std::ops::ControlFlow;
+use std::path::Path;
 
 const PERIODS: usize = 600;
 /// Control periods for robots that keep larger clearances and shorter links.
@@ -44,10 +46,19 @@ fn in_papers_order(name: &str) -> ValidScenario {
 /// How the mission of a shipped scenario in the paper's order ends in which one node stops and nothing else fails; no
 /// promise is broken.
 fn end_although_one_stops(name: &str, node: usize, crash: Crash, periods: usize) -> End {
-    let time = crash.time;
+    end_of_mission_in_which_one_stops(&in_papers_order(name), node, crash, periods)
+}
+
+fn end_of_mission_in_which_one_stops(
+    scenario: &ValidScenario,
+    node: usize,
+    crash: Crash,
+    periods: usize,
+) -> End {
+    let (name, time) = (&scenario.name, crash.time);
     let nodes = vec![(node, NodeFaults { crash: Some(crash), ..NodeFaults::default() })];
     let storm = Storm { nodes, ..Storm::default() };
-    let verdict = judged_run(&in_papers_order(name), &storm, periods).expect("nodes go on");
+    let verdict = judged_run(scenario, &storm, periods).expect("nodes go on");
     assert_eq!(verdict.violations, [], "{name}, node {node} at {time} s");
     verdict.end.unwrap_or_else(|| panic!("{name}, node {node} at {time} s: no end"))
 }
@@ -253,6 +264,16 @@ fn a_robot_that_begins_again_soon_holds_nobody_up() {
         let end = end_although_one_stops(name, robot, crash, 2_000);
         assert_eq!(end.outcome, Outcome::Serviced, "{name}: {}", end.reason);
     }
+}
+
+/// The access point hears it, and it is too far off for a link now that the robot between has stopped.
+#[test]
+fn a_robot_that_is_heard_and_cannot_be_attached_holds_nobody_up() {
+    let file = "tests/scenarios/in-range-without-a-link.toml";
+    let scenario = scenario_file::read(Path::new(file)).expect("it is a scenario");
+    let crash = Crash { time: 63.0, inputs: 0, back: None };
+    let end = end_of_mission_in_which_one_stops(&scenario, 0, crash, 400);
+    assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
 }
 
 /// They were cut off when the task was announced; those that it was announced to cannot service it alone.

@@ -6,7 +6,7 @@ use super::super::beacon::{Beacon, Notice};
 use super::super::robot::Numbers;
 use super::super::roll::Roll;
 use super::attendance::Attendee;
-use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
+use super::{AccessPoint, PATIENCE_WITH_ELECTIONS};
 use crate::automaton::TransitionError;
 
 impl AccessPoint {
@@ -157,7 +157,7 @@ impl AccessPoint {
             period: _,
         } = self;
         let settled = match self.notice() {
-            Notice::Quiet => (*settled_rounds).min(ROUNDS_UNTIL_ROSTER_SETTLES),
+            Notice::Quiet => (*settled_rounds).min(self.rounds_until_gathered()),
             _ => 0,
         };
         let patience = (PATIENCE_WITH_ELECTIONS * longest_wait + 1).max(self.longest_search());

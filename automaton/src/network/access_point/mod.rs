@@ -242,7 +242,7 @@ impl AccessPoint {
         if std::mem::take(&mut self.has_news) {
             return self.deliberate();
         }
-        self.count_settled_round(true);
+        self.settled_rounds += 1;
         self.locate_wrecks();
         #[cfg(feature = "abstraction")]
         debug_assert!(self.overlooks_nothing(), "access point {} overlooks something", self.number);
@@ -425,16 +425,19 @@ impl AccessPoint {
         } else {
             reports.below.clone()
         };
-        let is_same = *self.roster == roster;
+        let is_same = *self.roster == roster && *self.connected == reports.below;
+        self.settled_rounds = if is_same { self.settled_rounds + 1 } else { 0 };
         renew(&mut self.roster, roster);
         renew(&mut self.connected, reports.below);
-        self.count_settled_round(is_same);
     }
 
-    /// A round is over in which the roster has stayed the same, or not.
-    fn count_settled_round(&mut self, is_same: bool) {
-        let is_settled = is_same && self.connected.includes(&self.roster);
-        self.settled_rounds = if is_settled { self.settled_rounds + 1 } else { 0 };
+    /// For how many rounds nothing changes where robots have gathered. One that is heard and knows no way to an
+    /// access point may have found a parent by then.
+    fn rounds_until_gathered(&self) -> usize {
+        match self.connected.includes(&self.roster) {
+            true => ROUNDS_UNTIL_ROSTER_SETTLES,
+            false => ROUNDS_UNTIL_ROSTER_SETTLES.max(self.patience_with_searches()),
+        }
     }
 
     /// Robots and tasks of which these reports tell are heard of.

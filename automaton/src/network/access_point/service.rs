@@ -16,7 +16,7 @@ use super::super::roll::why_absent;
 use super::super::service::{Announced, Done, Electing, Gathering, Over, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::attendance::Attendee;
-use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
+use super::{AccessPoint, PATIENCE_WITH_ELECTIONS};
 
 /// A task is announced again at most this many times because robots that are heard of do not answer:
 /// one that restarts does not know of the election under way, or knows no way to an access point yet.
@@ -43,10 +43,10 @@ crate::observed! {
         rounds: point.site.settings.rounds_per_period as f64,
         /// The number of robots that take part, as far as it has heard.
         robots: point.roster.len() as f64,
-        /// Rounds for which the roster has not changed.
+        /// Rounds for which neither the roster has changed nor which of its robots know a way to an access point.
         settled: point.settled_rounds as f64,
-        /// Rounds after which robots count as gathered.
-        settling: ROUNDS_UNTIL_ROSTER_SETTLES as f64,
+        /// Rounds after which robots count as gathered: more if some know no way to an access point.
+        settling: point.rounds_until_gathered() as f64,
         /// Rounds since the election began.
         waited: point.election_rounds as f64,
         /// Rounds after which an election should be over.
@@ -220,8 +220,12 @@ impl AccessPoint {
     /// For how many rounds it waits for a robot that knows no way to an access point, if there is one.
     pub(super) fn longest_search(&self) -> usize {
         let is_awaited = self.wayless(false).next().is_some();
-        let rounds = self.site.settings.rounds_per_period.min(self.longest_wait);
-        usize::from(is_awaited) * PATIENCE_WITH_SEARCHES * rounds
+        usize::from(is_awaited) * self.patience_with_searches()
+    }
+
+    /// Rounds after which a robot that looks for another parent has found one, if there is one.
+    pub(super) fn patience_with_searches(&self) -> usize {
+        PATIENCE_WITH_SEARCHES * self.site.settings.rounds_per_period.min(self.longest_wait)
     }
 
     /// The robots that could not bid in the election for want of a way to an access point, and know one now.

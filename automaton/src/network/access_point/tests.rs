@@ -7,7 +7,7 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Election, IdSet, NodeId, Post, PostId};
 use serde_json::json;
 
-use super::super::beacon::{Announcement, Beacon, Bulletin, Notice};
+use super::super::beacon::{Announcement, Beacon, Bulletin, Notice, Reports};
 use super::super::duty::{Duty, Held, Path, Standby, Station};
 use super::super::message::Message;
 use super::super::order::Order;
@@ -17,9 +17,9 @@ use super::super::scenario::{Scenario, Task};
 use super::super::service::{Announced, Done, Electing, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::super::site::Site;
-use super::AccessPoint;
 use super::attendance::{Attendee, Gone, Present, Returning, Standing, Suspended, TaskRecord};
 use super::hearing::Heard;
+use super::{AccessPoint, ROUNDS_UNTIL_ROSTER_SETTLES};
 use crate::located::{Current, Place as _};
 use crate::node::{Input, Node as _, Outputs};
 
@@ -183,6 +183,31 @@ fn a_robot_that_knows_no_way_is_not_missed_while_it_is_heard() {
         point.survey_robots();
     }
     assert!(!point.roll.absent.contains(1) && !point.attending().contains(1));
+}
+
+/// It has been attached, and is too far off for a link now that the robot between has stopped.
+#[test]
+fn a_robot_that_knows_no_way_is_not_waited_for_for_ever() {
+    let mut point = access_point();
+    point.is_asked(&[Task::at(THERE)], 1);
+    for robot in [0, 1] {
+        point.hear(0, &Roll::default(), &Arc::new(beacon(robot, HERE)));
+        point.attendees[robot].attend();
+    }
+    let mut reports = Reports { below: [0].into_iter().collect(), ..Reports::default() };
+    reports.strays.insert(1);
+    let announces_after = |point: &mut AccessPoint, rounds: usize| {
+        point.settled_rounds = rounds;
+        point.update_roster(reports.clone());
+        point.serve().expect("guards have values");
+        matches!(point.notice(), Notice::Task(_))
+    };
+    point.update_roster(reports.clone());
+    let patience = point.patience_with_searches();
+    assert!(patience > ROUNDS_UNTIL_ROSTER_SETTLES);
+    assert!(!announces_after(&mut point, ROUNDS_UNTIL_ROSTER_SETTLES), "it may find a parent");
+    assert!(!announces_after(&mut point, patience - 2));
+    assert!(announces_after(&mut point, patience - 1), "there is none");
 }
 
 // ---- Tasks with times ------------------------------------------------------------------------
