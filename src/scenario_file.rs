@@ -19,7 +19,7 @@ use toml::de::DeTable;
 #[non_exhaustive]
 pub enum ScenarioError {
     /// The file is missing, may not be read or is not UTF-8 text.
-    #[error("{}: cannot be read: {source}; give the path of a scenario file", path.display())]
+    #[error("{}: cannot be read: {}", path.display(), told(source))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -82,6 +82,14 @@ impl fmt::Display for Mistake {
             write!(formatter, "{}: ", self.key)?;
         }
         formatter.write_str(&self.message)
+    }
+}
+
+/// Why a file cannot be read, and what would help.
+fn told(source: &std::io::Error) -> String {
+    match source.kind() {
+        std::io::ErrorKind::InvalidData => "it is no UTF-8 text; save it as UTF-8".to_owned(),
+        _ => format!("{source}; give the path of a scenario file"),
     }
 }
 

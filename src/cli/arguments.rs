@@ -29,7 +29,7 @@ Exit status:
   4  an invariant was violated, and the mission was stopped
 
 Start with: pleach run scenarios/study-1.toml
-A process for every node: see docs/how-to/processes.md for robot, access-point, watch and launch";
+A process for every node: see docs/how-to/processes.md";
 
 /// The commands of the program.
 #[derive(Debug, Subcommand)]

@@ -67,11 +67,7 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
     problem.settings.horizon = arguments.horizon.unwrap_or(problem.settings.horizon);
     problem.settings.step = arguments.step.unwrap_or(problem.settings.step);
     problem.settings.clusters = arguments.clusters.unwrap_or(problem.settings.clusters);
-    let picture = arguments.svg.as_ref().map(|path| {
-        let axes = axes(&problem, arguments.axes.as_deref())?;
-        Ok::<_, Failure>((path, axes))
-    });
-    let picture = picture.transpose()?;
+    let axes = axes(&problem, arguments.axes.as_deref())?;
     let begin = Instant::now();
     let solution = solve(&problem, arguments.quiet)?;
     let seconds = begin.elapsed().as_secs_f64();
@@ -84,7 +80,7 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
             )));
         }
     }
-    if let Some((path, axes)) = picture {
+    if let Some(path) = &arguments.svg {
         let runs = problem.runs(arguments.runs);
         let picture = solution.picture(&problem.system, [&axes[0], &axes[1]], &runs);
         let picture = picture.map_err(Failure::Usage)?.to_svg();

@@ -85,18 +85,16 @@ impl Range {
         Ok(Some(Self { from, to, count }))
     }
 
-    /// The values as they are written; whole numbers where all of them are.
+    /// The values as they are written, whole numbers without a point.
     fn values(self) -> Vec<String> {
         let Self { from, to, count } = self;
         let share = |index: usize| index as f64 / (count - 1) as f64;
-        let values: Vec<f64> =
-            (0..count).map(|index| shortened(from + (to - from) * share(index))).collect();
-        let whole = values.iter().all(|value| value.fract() == 0.0 && value.abs() < 1e15);
-        let written = |value: &f64| match whole {
+        let value = |index: usize| shortened(from + (to - from) * share(index));
+        let written = |value: f64| match value.fract() == 0.0 && value.abs() < 1e15 {
             true => format!("{value:.0}"),
             false => format!("{value:?}"),
         };
-        values.iter().map(written).collect()
+        (0..count).map(value).map(written).collect()
     }
 }
 
@@ -120,6 +118,7 @@ mod tests {
         assert_eq!(values("link.full_range=0.3..0.6:7")[1..3], ["0.35", "0.4"]);
         assert_eq!(values("control.max_steps=100..500:5")[1], "200");
         assert_eq!(values("control.period=-1..1:3"), ["-1", "0", "1"]);
+        assert_eq!(values("control.max_steps=5..10:3"), ["5", "7.5", "10"]);
         assert_eq!(values("control.routing_method=dual"), ["dual"]);
         assert_eq!(values("description=a..b: dots"), ["a..b: dots"]);
     }

@@ -142,7 +142,8 @@ impl Comparison {
                 self.table(key, value.span(), table, entries);
             }
             (other, shape) => {
-                let message = format!("{} stands where {} belongs", spoken(other), shape.wanted());
+                let message =
+                    format!("{} stands where {} belongs", spoken(other), shape.wanted(key));
                 self.found.push(Departure { key: key.clone(), span: value.span(), message });
             }
         }
@@ -183,8 +184,8 @@ impl Comparison {
         }
         for entry in entries.iter().filter(|entry| entry.required) {
             if !table.contains_key(entry.name) {
-                let message = format!("missing; it must be {}", entry.shape.wanted());
                 let here = key.clone().key(entry.name);
+                let message = format!("missing; it must be {}", entry.shape.wanted(&here));
                 self.found.push(Departure { key: here, span: span.clone(), message });
             }
         }
@@ -192,8 +193,8 @@ impl Comparison {
 }
 
 impl Shape {
-    /// What belongs where this shape is asked for.
-    fn wanted(&self) -> String {
+    /// What belongs at `key`, where this shape is asked for.
+    fn wanted(&self, key: &KeyPath) -> String {
         match self {
             Shape::Text => "a text in quotation marks".into(),
             Shape::Number => "a number".into(),
@@ -204,7 +205,7 @@ impl Shape {
             }
             Shape::Point => "a point [x, y]".into(),
             Shape::ListOf(Shape::Point) => "a polygon [[x, y], [x, y], [x, y], …]".into(),
-            Shape::ListOf(Shape::Table(_)) => "a list of tables, each under its [[…]]".into(),
+            Shape::ListOf(Shape::Table(_)) => format!("a list of tables, each under its [[{key}]]"),
             Shape::ListOf(_) => "a list of polygons [[[x, y], …], …]".into(),
             Shape::Table(entries) => {
                 let required: Vec<_> =

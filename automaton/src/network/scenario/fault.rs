@@ -109,15 +109,15 @@ pub enum Problem {
     RangesTooClose { full_range: f64, max_range: f64, least: f64 },
     /// e or m too large against ρ.
     #[error(
-        "{error} is too large for clearance = {clearance}: at most half of it, {most}; raise the \
-         clearance"
+        "{error} is too large for clearance = {clearance}: at most half of it, {}; raise the \
+         clearance", rounded(*most)
     )]
     ErrorTooLarge { error: f64, clearance: f64, most: f64 },
     /// δ too small against ρ + e + m (Remark 5.5).
     #[error(
         "{service_radius} is too small for clearance = {clearance}{}: two robots that hand \
          over a task stay 2 clearances apart and must both be able to service it, so at \
-         least {least}", told_margin(*margin)
+         least {}", told_margin(*margin), rounded(*least)
     )]
     ServiceRadiusTooSmall { service_radius: f64, clearance: f64, margin: f64, least: f64 },
     /// ρ so large that robots out of range of each other could touch.
@@ -129,17 +129,22 @@ pub enum Problem {
     /// σ > (u − 2ρ)/2 (footnote 6).
     #[error(
         "{step_radius} is too long a step: robots that cannot hear each other could meet \
-         within one period, so at most (max_range − 2 clearance)/2 = {most}"
+         within one period, so at most (max_range − 2 clearance)/2 = {}", rounded(*most)
     )]
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.
     #[error(
-        "no link can be added to the tree: a reliability of {build_reliability} is reached \
-         at distance {longest:.6}, and robots may stand service_radius = {service_radius} \
-         away from their posts; lower this reliability or service_radius, or raise \
-         full_range"
+        "no link can be added to the tree: a reliability of {build_reliability} is reached at \
+         distance {longest:.6}, and robots may stand service_radius = {} away from their posts{}, or \
+         raise full_range", rounded(*service_radius), lower(*clearance)
     )]
-    TreeLinksTooShort { build_reliability: f64, longest: f64, service_radius: f64 },
+    TreeLinksTooShort {
+        build_reliability: f64,
+        longest: f64,
+        service_radius: f64,
+        /// ρ, where δ follows from it.
+        clearance: Option<f64>,
+    },
     /// Links would be too weak as soon as they are made.
     #[error(
         "links of the tree would be made at a reliability of {build_reliability}, below \
@@ -186,7 +191,7 @@ pub enum Problem {
     /// Robots that touch each other.
     #[error(
         "it is only {distance:.6} away from robot[{other}]: robots keep 2 clearances = \
-         {least} from each other{}", told_margin(2.0 * margin)
+         {} from each other{}", rounded(*least), told_margin(2.0 * margin)
     )]
     RobotsTooClose { other: usize, distance: f64, least: f64, margin: f64 },
     /// A robot that no chain of links connects to an access point.
@@ -236,6 +241,19 @@ pub enum Problem {
 fn short(value: f64) -> String {
     let is_long = value.is_finite() && value != 0.0 && !(1e-6..1e15).contains(&value.abs());
     if is_long { format!("{value:e}") } else { value.to_string() }
+}
+
+/// A number that has been worked out, without the rounding of its last digits.
+fn rounded(value: f64) -> f64 {
+    (value * 1e12).round() / 1e12
+}
+
+/// Which lengths to lower, where ρ is given if the service radius follows from it.
+fn lower(clearance: Option<f64>) -> String {
+    match clearance {
+        Some(clearance) => format!(", three times clearance = {clearance}; lower clearance"),
+        None => "; lower this reliability or service_radius".to_owned(),
+    }
 }
 
 /// What else keeps robots apart.

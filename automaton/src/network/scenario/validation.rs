@@ -320,11 +320,16 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
     });
     let LinkLengths { build, hard: longest } = settings.usual_links();
     let links = (build <= 0.0).then(|| {
-        let key = match scenario.control.build_reliability {
-            Some(_) => "build_reliability",
-            None => "tree_reliability",
-        };
-        Problem::TreeLinksTooShort { build_reliability, longest, service_radius }
+        let control = &scenario.control;
+        let stated = [
+            ("build_reliability", control.build_reliability),
+            ("tree_reliability", control.tree_reliability),
+            ("service_radius", control.service_radius),
+        ];
+        let stated = stated.into_iter().find(|(_, value)| value.is_some());
+        let key = stated.map_or("clearance", |(key, _)| key);
+        let clearance = control.service_radius.is_none().then_some(settings.clearance);
+        Problem::TreeLinksTooShort { build_reliability, longest, service_radius, clearance }
             .at(control_key(key))
     });
     [service, step, weak, links].into_iter().flatten().collect()
