@@ -112,6 +112,13 @@ impl Robot {
         }
     }
 
+    /// Whether the neighbour is ahead of this robot in the primary team.
+    pub(super) fn follows(&self, neighbour: &Neighbour) -> bool {
+        let members = |team: Option<&TeamReport>| team.map(|team| team.members);
+        let [ahead, own] = [members(neighbour.beacon.team.as_ref()), members(self.team.as_ref())];
+        self.is_of_team(neighbour) && ahead.zip(own).is_some_and(|(ahead, own)| ahead < own)
+    }
+
     /// Whether this robot and the neighbour are both of the primary team.
     fn is_of_team(&self, neighbour: &Neighbour) -> bool {
         self.duty.is_primary() && neighbour.post().is_some_and(Post::is_primary)

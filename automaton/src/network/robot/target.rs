@@ -22,6 +22,7 @@ pub fn targets() -> Targets {
     let laws = Laws::of("ψ")
         .case(Shifting, guards::changes_over(), "next access point on Σ", Robot::next_of_crossing)
         .case(Shifting, guards::shifts(), "place ahead on Σ", Robot::reference_ahead)
+        .case(Following, guards::gives_way(), "place aside for the team", Robot::place_aside)
         .case(Following, guards::follows(), "robot ahead", Robot::team_goal)
         .case(Leading, guards::leads(), "task", Robot::team_goal);
     let posted = [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease];

@@ -115,9 +115,9 @@ pub enum Problem {
     ErrorTooLarge { error: f64, clearance: f64, most: f64 },
     /// δ too small against ρ + e + m (Remark 5.5).
     #[error(
-        "{service_radius} is too small for clearance = {clearance}{}: two robots that hand \
+        "{service_radius} is too small for clearance = {}{}: two robots that hand \
          over a task stay 2 clearances apart and must both be able to service it, so at \
-         least {}", told_margin(*margin), rounded(*least)
+         least {}", rounded(*clearance), told_margin(*margin), rounded(*least)
     )]
     ServiceRadiusTooSmall { service_radius: f64, clearance: f64, margin: f64, least: f64 },
     /// ρ so large that robots out of range of each other could touch.
@@ -185,7 +185,7 @@ pub enum Problem {
     /// A robot that touches a wall.
     #[error(
         "({x}, {y}) is only {distance:.6} away from a wall: robots keep a clearance of \
-         {clearance}{}", told_margin(*margin)
+         {}{}", rounded(*clearance), told_margin(*margin)
     )]
     TooCloseToWall { x: f64, y: f64, distance: f64, clearance: f64, margin: f64 },
     /// Robots that touch each other.

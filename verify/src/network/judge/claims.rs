@@ -318,7 +318,24 @@ fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> R
             _ => None,
         })
     };
-    let places = |node: usize| [Some(node), partner_of(node)].into_iter().flatten();
+    // Whose post a secondary team takes over in the same period: the robot behind on Σ has it.
+    let announced = scene.events.iter().filter_map(|event| match event {
+        MissionEvent::RecruitElected { path, .. } => Some(path),
+        _ => None,
+    });
+    let paths: Vec<_> = ledger.walk.iter().map(|walk| &walk.announced).chain(announced).collect();
+    let has_arrived = |robot: usize| {
+        scene.events.iter().any(|event| {
+            matches!(event, MissionEvent::SubgroupArrived { robots, .. } if robots.contains(&robot))
+        })
+    };
+    let heir_of = |node: usize| {
+        paths.iter().find_map(|path| {
+            let place = path.iter().position(|&it| it == node)?.checked_sub(1)?;
+            Some(path[place]).filter(|&behind| has_arrived(behind))
+        })
+    };
+    let places = |node: usize| [Some(node), partner_of(node), heir_of(node)].into_iter().flatten();
     let is_edge = |parent: usize| {
         places(robot).any(|child| {
             places(parent).any(|parent| scene.snapshot.tree.contains(&(child, parent)))
