@@ -286,6 +286,16 @@ impl FreeSpace {
         self.sight.tree.for_each_near(center, radius, visit);
     }
 
+    /// Visits the edges of the planning set within `radius` of `center`.
+    pub(super) fn for_each_planning_wall_near(
+        &self,
+        center: Point,
+        radius: f64,
+        visit: impl FnMut(&Segment),
+    ) {
+        self.planning.tree.for_each_near(center, radius, visit);
+    }
+
     /// Checks that both outlines keep the clearance and that the planning set lies within the
     /// sight set. What keeps away from ∂W lies wholly inside or outside W, ring by ring, so one
     /// vertex of each tells. An outline that keeps the clearance encloses no part of ∂W unless it

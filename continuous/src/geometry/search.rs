@@ -109,8 +109,9 @@ impl<'a> Search<'a> {
         let is_usable = |corner: &Point| {
             space.contains(*corner) && avoids(&Segment::new(*corner, *corner), discs)
         };
+        let around = discs.iter().flat_map(|disc| rim(disc, from));
         let rims: Vec<Point> =
-            discs.iter().flat_map(|disc| rim(disc, from)).filter(is_usable).collect();
+            around.chain(narrow_passages(space, discs)).filter(is_usable).collect();
         let nodes = FIRST_CORNER + space.corners().len() + rims.len();
         Search {
             space,
@@ -304,13 +305,39 @@ impl<'a> Search<'a> {
 /// Corners of the regular polygon about a disc, turned so that one of its sides faces `from`: where that lies
 /// at the disc, the ways round both sides begin there.
 fn rim(disc: &Disc, from: Point) -> impl Iterator<Item = Point> {
-    let Disc { center, radius } = *disc;
+    let (center, radius) = (disc.center, outer_radius(disc));
     let ahead = from - center;
     let (facing, half) = (ahead.y.atan2(ahead.x), PI / SIDES as f64);
     (0..SIDES).map(move |corner| {
         let angle = facing + (2 * corner + 1) as f64 * half;
-        center + Vector::new(angle.cos(), angle.sin()) * (radius / half.cos())
+        center + Vector::new(angle.cos(), angle.sin()) * radius
     })
+}
+
+/// Where ways begin and end that lead between a disc and a wall, or between two discs, and are too narrow for the
+/// polygons about them: the circle on which the corners of a polygon lie meets the wall, or that of the other disc.
+fn narrow_passages(space: &FreeSpace, discs: &[Disc]) -> Vec<Point> {
+    let outer: Vec<Disc> =
+        discs.iter().map(|disc| Disc { radius: outer_radius(disc), ..*disc }).collect();
+    let mut places = Vec::new();
+    for (at, circle) in outer.iter().enumerate() {
+        space.for_each_planning_wall_near(circle.center, circle.radius, |wall| {
+            if discs[at].gap(wall) > 0.0 {
+                places.extend(circle.meets(wall));
+            }
+        });
+        for (other, next) in outer.iter().enumerate().skip(at + 1) {
+            if discs[at].radius + discs[other].radius < (next.center - circle.center).norm() {
+                places.extend(circle.meets_circle(next));
+            }
+        }
+    }
+    places
+}
+
+/// The distance of the corners of the polygon about a disc from its centre.
+fn outer_radius(disc: &Disc) -> f64 {
+    disc.radius / (PI / SIDES as f64).cos()
 }
 
 #[cfg(test)]

@@ -30,6 +30,32 @@ impl Disc {
     pub fn gap(&self, segment: &Segment) -> f64 {
         segment.distance(self.center) - self.radius
     }
+
+    /// Where the rim crosses `segment`: at most two points.
+    pub(super) fn meets(&self, segment: &Segment) -> impl Iterator<Item = Point> + use<> {
+        let (from, along) = (segment.from, segment.vector());
+        let length = along.norm_squared();
+        let foot = along.dot(&(self.center - from)) / length;
+        let away = (from + along * foot - self.center).norm_squared();
+        let half = ((self.radius * self.radius - away) / length).sqrt();
+        [foot - half, foot + half]
+            .into_iter()
+            .filter(|share| (0.0..=1.0).contains(share))
+            .map(move |share| from + along * share)
+    }
+
+    /// Where the rims of two discs cross: at most two points.
+    pub(super) fn meets_circle(&self, other: &Disc) -> impl Iterator<Item = Point> + use<> {
+        let (center, apart) = (self.center, other.center - self.center);
+        let distance = apart.norm();
+        let square = |radius: f64| radius * radius;
+        let along =
+            (square(distance) + square(self.radius) - square(other.radius)) / (2.0 * distance);
+        let aside = (square(self.radius) - square(along)).sqrt();
+        let (ahead, left) = (apart / distance, Vector::new(-apart.y, apart.x) / distance);
+        let crossings = [aside, -aside].into_iter().filter(|aside| aside.is_finite());
+        crossings.map(move |aside| center + ahead * along + left * aside)
+    }
 }
 
 /// The points within `radius` of a segment: where a robot may be that follows the segment up to
