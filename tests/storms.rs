@@ -276,6 +276,17 @@ fn a_robot_that_is_heard_and_cannot_be_attached_holds_nobody_up() {
     assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
 }
 
+/// Between it and the wall another robot just fits. The leader comes to the end of its link there, and recruits are
+/// called for.
+#[test]
+fn a_leader_at_the_end_of_its_link_waits_beside_a_robot_that_has_stopped() {
+    let file = "tests/scenarios/narrow-gap-beside-a-robot-that-has-stopped.toml";
+    let scenario = scenario_file::read(Path::new(file)).expect("it is a scenario");
+    let crash = Crash { time: 60.0, inputs: 0, back: None };
+    let end = end_of_mission_in_which_one_stops(&scenario, 2, crash, 1_000);
+    assert_eq!(end.outcome, Outcome::InsufficientRobots, "{}", end.reason);
+}
+
 /// They were cut off when the task was announced; those that it was announced to cannot service it alone.
 #[test]
 fn robots_that_come_back_are_asked_before_a_task_is_given_up() {

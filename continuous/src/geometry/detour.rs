@@ -15,7 +15,8 @@ const DISC_SHRINKAGE: f64 = 1e-9;
 impl FreeSpace {
     /// A shortest path from `from` to `to` that keeps out of `obstacles`, `None` if there is none.
     ///
-    /// Paths around a disc follow a regular octagon about it, one side of which faces `from`. A disc that
+    /// Paths around a disc follow a regular octagon about it, one side of which faces `from`; where a wall or another
+    /// disc leaves less room than that, they still lead through any gap. A disc that
     /// contains `to` is no obstacle (the robot comes to replace its occupant), and one that contains `from` is
     /// taken just small enough not to. Ends outside the free space are treated as by
     /// [`geodesic`](Self::geodesic); the way between them and the free space minds no obstacle.

@@ -314,23 +314,17 @@ fn rim(disc: &Disc, from: Point) -> impl Iterator<Item = Point> {
     })
 }
 
-/// Where ways begin and end that lead between a disc and a wall, or between two discs, and are too narrow for the
-/// polygons about them: the circle on which the corners of a polygon lie meets the wall, or that of the other disc.
+/// Where ways that are too narrow for the polygons about discs begin and end, beside a wall or another disc: the circle
+/// on which the corners of a polygon lie meets the wall, or that about the other disc.
 fn narrow_passages(space: &FreeSpace, discs: &[Disc]) -> Vec<Point> {
-    let outer: Vec<Disc> =
-        discs.iter().map(|disc| Disc { radius: outer_radius(disc), ..*disc }).collect();
+    let outer = discs.iter().map(|disc| Disc { radius: outer_radius(disc), ..*disc });
+    let outer: Vec<Disc> = outer.collect();
     let mut places = Vec::new();
     for (at, circle) in outer.iter().enumerate() {
         space.for_each_planning_wall_near(circle.center, circle.radius, |wall| {
-            if discs[at].gap(wall) > 0.0 {
-                places.extend(circle.meets(wall));
-            }
+            places.extend(circle.crossings(wall));
         });
-        for (other, next) in outer.iter().enumerate().skip(at + 1) {
-            if discs[at].radius + discs[other].radius < (next.center - circle.center).norm() {
-                places.extend(circle.meets_circle(next));
-            }
-        }
+        places.extend(outer[at + 1..].iter().flat_map(|other| circle.crossings_with(other)));
     }
     places
 }

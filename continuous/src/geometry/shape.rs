@@ -32,7 +32,7 @@ impl Disc {
     }
 
     /// Where the rim crosses `segment`: at most two points.
-    pub(super) fn meets(&self, segment: &Segment) -> impl Iterator<Item = Point> + use<> {
+    pub(super) fn crossings(&self, segment: &Segment) -> impl Iterator<Item = Point> + use<> {
         let (from, along) = (segment.from, segment.vector());
         let length = along.norm_squared();
         let foot = along.dot(&(self.center - from)) / length;
@@ -45,7 +45,7 @@ impl Disc {
     }
 
     /// Where the rims of two discs cross: at most two points.
-    pub(super) fn meets_circle(&self, other: &Disc) -> impl Iterator<Item = Point> + use<> {
+    pub(super) fn crossings_with(&self, other: &Disc) -> impl Iterator<Item = Point> + use<> {
         let (center, apart) = (self.center, other.center - self.center);
         let distance = apart.norm();
         let square = |radius: f64| radius * radius;
@@ -53,8 +53,8 @@ impl Disc {
             (square(distance) + square(self.radius) - square(other.radius)) / (2.0 * distance);
         let aside = (square(self.radius) - square(along)).sqrt();
         let (ahead, left) = (apart / distance, Vector::new(-apart.y, apart.x) / distance);
-        let crossings = [aside, -aside].into_iter().filter(|aside| aside.is_finite());
-        crossings.map(move |aside| center + ahead * along + left * aside)
+        let sides = [aside, -aside].into_iter().filter(|aside| aside.is_finite());
+        sides.map(move |aside| center + ahead * along + left * aside)
     }
 }
 

@@ -1,6 +1,7 @@
 use pleach_continuous::geometry::{Disc, FreeSpace, Segment, Workspace};
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
+use std::f64::consts::PI;
 
 use super::environments::{CLEARANCE, environment, place, ring, space_round_hole};
 use super::plain;
@@ -104,6 +105,35 @@ fn detour_follows_an_octagon() {
     assert_eq!(free_space.detour(from, to, &wall), None, "nothing leads through");
 }
 
+/// Sides of polygons that are hardly larger than a disc.
+const FINE: u32 = 24;
+/// An octagon about a disc is longer than its rim by less than this factor.
+const OVER_OCTAGONS: f64 = 1.06;
+
+/// The discs, larger by a factor.
+fn larger(discs: &[Disc], factor: f64) -> Vec<Disc> {
+    discs.iter().map(|disc| Disc { radius: factor * disc.radius, ..*disc }).collect()
+}
+
+/// Between a disc and a wall, and between two discs, where octagons about them close the gap.
+#[test]
+fn detours_lead_through_narrow_gaps() {
+    let boundary = ring(&[(0.0, 0.0), (9.0, 0.0), (9.0, 1.0), (0.0, 1.0)]);
+    let corridor = FreeSpace::new(&Workspace::new(boundary, vec![]).unwrap(), 0.1).unwrap();
+    let disc = |y: f64, radius: f64| Disc { center: Point::new(4.0, y), radius };
+    let to = Point::new(8.0, 0.5);
+    for from in [Point::new(1.0, 0.5), Point::new(3.4, 0.2), Point::new(3.6, 0.8)] {
+        let length = |discs: &[Disc]| corridor.detour(from, to, discs).map(|way| way.length);
+        let straight = (to - from).norm();
+        for gap in [[disc(0.4, 0.49)].as_slice(), &[disc(0.2, 0.29), disc(0.8, 0.29)]] {
+            assert!(length(gap).is_some_and(|length| length < straight + 0.6), "{from} {gap:?}");
+        }
+        for wall in [[disc(0.4, 0.51)].as_slice(), &[disc(0.2, 0.31), disc(0.8, 0.31)]] {
+            assert_eq!(length(wall), None, "{from} {wall:?}");
+        }
+    }
+}
+
 proptest! {
     #[test]
     fn geodesics_are_shortest(environment in environment(), a in place(), b in place()) {
@@ -167,17 +197,29 @@ proptest! {
             .map(|center| Disc { center: free_space.nearest(center), radius: radius * CLEARANCE })
             .filter(|disc| !disc.contains(a) && !disc.contains(b))
             .collect();
-        let corners: Vec<Point> = discs.iter().flat_map(|disc| plain::octagon(disc, a)).collect();
-        let shortest = |allowed: &dyn Fn(Point, Point) -> bool| {
-            plain::shortest(free_space.outline(), &corners, allowed, a, b, tolerance / 4.0)
+        let shortest = |corners: &[Point], allowed: &dyn Fn(Point, Point) -> bool| {
+            plain::shortest(free_space.outline(), corners, allowed, a, b, tolerance / 4.0)
         };
-        // Paths bend at corners of octagons, and may cut the octagons, but not the discs.
-        let lower = shortest(&|from, to| plain::avoids(&discs, from, to));
-        let upper = shortest(&|from, to| plain::avoids_octagons(&discs, a, from, to));
+        // No shorter than a way that bends at many places of slightly smaller discs.
+        let smaller = larger(&discs, (PI / f64::from(FINE)).cos());
+        let bends: Vec<Point> =
+            discs.iter().flat_map(|disc| plain::polygon(disc, FINE, 0.0)).collect();
+        let lower = shortest(&bends, &|from, to| plain::avoids(&smaller, from, to));
+        // No longer than one around the octagons, and there is one wherever slightly larger discs leave a gap.
+        let octagons: Vec<Point> = discs.iter().flat_map(|disc| plain::octagon(disc, a)).collect();
+        let upper = shortest(&octagons, &|from, to| plain::avoids_octagons(&discs, a, from, to));
+        let obstacles = larger(&discs, 1.01);
+        let rims = larger(&obstacles, 1.0 / (PI / f64::from(FINE)).cos());
+        let bends: Vec<Point> =
+            rims.iter().flat_map(|disc| plain::polygon(disc, FINE, 0.0)).collect();
+        let through_gaps = shortest(&bends, &|from, to| plain::avoids(&obstacles, from, to));
         let length = free_space.detour(a, b, &discs).map_or(f64::INFINITY, |path| path.length);
         let rounding = 40.0 * tolerance;
-        prop_assert!(lower - rounding <= length, "{length} {lower}");
+        prop_assert!(0.995 * lower - rounding <= length, "{length} {lower}");
         prop_assert!(length <= upper + rounding, "{length} {upper}");
+        // Ends beside a disc lie within its octagon, and ways begin and end at a corner of it.
+        let ends = 0.5 * radius * CLEARANCE;
+        prop_assert!(length <= OVER_OCTAGONS * through_gaps + ends, "{length} {through_gaps}");
     }
 
     #[test]

@@ -86,10 +86,15 @@ pub fn avoids(discs: &[Disc], a: Point, b: Point) -> bool {
 
 /// Corners of the octagon about a disc, one side of which faces `from`.
 pub fn octagon(disc: &Disc, from: Point) -> Vec<Point> {
-    let reach = disc.radius / (PI / 8.0).cos();
     let ahead = from - disc.center;
-    let angles = (0..8).map(|k| ahead.y.atan2(ahead.x) + PI / 8.0 + f64::from(k) * PI / 4.0);
-    angles.map(|angle| disc.center + reach * Vector::new(angle.cos(), angle.sin())).collect()
+    let outer = Disc { radius: disc.radius / (PI / 8.0).cos(), ..*disc };
+    polygon(&outer, 8, ahead.y.atan2(ahead.x) + PI / 8.0)
+}
+
+/// Corners on the rim of a disc, evenly spaced.
+pub fn polygon(disc: &Disc, sides: u32, first: f64) -> Vec<Point> {
+    let angles = (0..sides).map(|k| first + 2.0 * PI * f64::from(k) / f64::from(sides));
+    angles.map(|angle| disc.center + disc.radius * Vector::new(angle.cos(), angle.sin())).collect()
 }
 
 /// Whether a segment keeps out of the octagons about all discs, as seen from `from`, up to a millionth.

@@ -38,10 +38,14 @@ const MOST_IN_TEAM: usize = 3;
 /// How much farther from the goal, in ρ, such a partner may be.
 const CONCESSION: f64 = 4.0;
 
-/// Whether the second of two members of the primary team stands still behind the first.
+/// Whether the second of two members of the primary team is behind the first.
+fn is_behind(ahead: Option<&TeamReport>, behind: Option<&TeamReport>) -> bool {
+    ahead.zip(behind).is_some_and(|(ahead, behind)| ahead.members < behind.members)
+}
+
+/// As [`is_behind`], and it stands still.
 fn stands_behind(ahead: Option<&TeamReport>, behind: Option<&TeamReport>) -> bool {
-    let pair = ahead.zip(behind);
-    pair.is_some_and(|(ahead, behind)| ahead.members < behind.members && behind.stands_still())
+    is_behind(ahead, behind) && behind.is_some_and(TeamReport::stands_still)
 }
 
 impl Robot {
@@ -114,9 +118,7 @@ impl Robot {
 
     /// Whether the neighbour is ahead of this robot in the primary team.
     pub(super) fn follows(&self, neighbour: &Neighbour) -> bool {
-        let members = |team: Option<&TeamReport>| team.map(|team| team.members);
-        let [ahead, own] = [members(neighbour.beacon.team.as_ref()), members(self.team.as_ref())];
-        self.is_of_team(neighbour) && ahead.zip(own).is_some_and(|(ahead, own)| ahead < own)
+        self.is_of_team(neighbour) && is_behind(neighbour.beacon.team.as_ref(), self.team.as_ref())
     }
 
     /// Whether this robot and the neighbour are both of the primary team.

@@ -259,17 +259,8 @@ fn a_robot_that_is_being_given_a_post_is_not_relieved_of_it() {
 /// Two members of one team, which both mean to move, stand in the wrong order in a narrow corridor.
 #[test]
 fn a_member_that_stands_behind_is_a_partner() {
-    let report = |members: u32, still: u32| {
-        let near_other_tree = false;
-        Some(TeamReport {
-            still,
-            slack: None,
-            saturated: None,
-            remaining: 3.0,
-            members,
-            near_other_tree,
-        })
-    };
+    let report =
+        |members: u32, still: u32| Some(TeamReport { members, ..team::report(still, None, None) });
     let beside = |own: u32, other: u32, still: u32| {
         let mut robot = stuck(5);
         robot.team = report(own, 5);

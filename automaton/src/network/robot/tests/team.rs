@@ -171,7 +171,7 @@ fn a_bound_leader_services_a_task_within_reach_of_its_post() {
     assert_eq!(jumped(eager(east(0.1), beside)), calls(None, beside), "it is not at its post");
 }
 
-fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {
+pub(super) fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {
     TeamReport { still, slack, saturated, remaining: 1.5, members: 2, near_other_tree: false }
 }
 

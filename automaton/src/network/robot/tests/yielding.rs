@@ -1,5 +1,6 @@
 //! When a robot asks for way, and where a parked one steps aside.
 
+use super::super::super::beacon::TeamReport;
 use super::*;
 
 /// A mover west of robot 0 that wants to go past it to the east.
@@ -62,6 +63,22 @@ fn a_robot_clears_the_stretch_ahead_of_a_mover() {
     let mut robot = posted();
     robot.hears(Beacon { way: None, ..asking(0.1) });
     assert_eq!(robot.way_to_clear(), None, "it does not ask");
+}
+
+/// It stands in a bend, say, in which the leader has to turn round.
+#[test]
+fn a_member_of_the_team_makes_way_for_those_ahead_of_it() {
+    let steps_aside = |own: u32, other: u32, way: Point| {
+        let mut robot = robot();
+        robot.holds(primary(31, Some(30), 13));
+        let report = |members: u32| Some(TeamReport { members, ..team::report(20, None, None) });
+        robot.team = report(own);
+        robot.hears(Beacon { way: Some(way), team: report(other), ..asking(2.05 * CLEARANCE) });
+        robot.place_aside().is_some_and(|place| (place - HERE).norm() <= 3.0 * CLEARANCE)
+    };
+    assert!(steps_aside(2, 1, east(3.0)));
+    assert!(!steps_aside(2, 1, west(3.0)), "it goes away from here");
+    assert!(!steps_aside(1, 2, east(3.0)), "it is behind");
 }
 
 #[test]
