@@ -17,11 +17,13 @@ use super::mission::{Effects, MissionEffect};
 
 /// The classes of bids. A robot that no tree connects to the caller bids only to show where it could help.
 const STRANDED: u8 = 0;
+/// A redundant robot, where robots that have stopped close the way to the caller.
+const SHUT_OFF: u8 = 1;
 /// The robot whose post bears the caller and nothing else joins the team where it stands, if no other
 /// robot can come.
-const BEARER: u8 = 1;
+const BEARER: u8 = 2;
 /// A redundant robot.
-const AT_HAND: u8 = 2;
+const AT_HAND: u8 = 3;
 
 /// Residuals in bids are compared in units of this: routes aim at the same reserve everywhere,
 /// and remaining differences are the dual iteration's noise.
@@ -246,6 +248,9 @@ impl Robot {
         }
         let bid = match (&self.route, self.recruit_class()) {
             (_, None) => None,
+            (Some((_, route)), Some(AT_HAND)) if !self.is_open(route) => {
+                Some(self.recruit_bid(SHUT_OFF, route.len()))
+            }
             (Some((_, route)), Some(class)) => Some(self.recruit_bid(class, route.len())),
             (None, _) if self.waited_rounds < 2 * self.longest_wait() => return,
             (None, _) => self.stranded_bid(),
@@ -281,6 +286,13 @@ impl Robot {
         let is_heard = self.neighbour(caller).is_some_and(|caller| !caller.is_silent());
         let bears = || self.children().map(Neighbour::id).eq([caller]);
         self.duty.location() == Activity::Relay && is_heard && bears()
+    }
+
+    /// Whether every robot on this way can go to the place ahead, whatever robots have stopped.
+    fn is_open(&self, route: &[Hop]) -> bool {
+        let mut legs =
+            route.windows(2).map(|pair| (pair[0].place.position, pair[1].place.reference));
+        legs.all(|(from, to)| self.open_way(from, to).is_some())
     }
 
     /// The larger the residual, the better; ties go to the shorter path.

@@ -75,6 +75,15 @@ impl Robot {
         }
     }
 
+    /// The length of the shortest way between two places around robots that have stopped; none if they close it.
+    pub(super) fn open_way(&self, from: Point, to: Point) -> Option<f64> {
+        let stopped: Vec<Disc> = self.keep_out_discs(KEEP_OUT * self.clearance()).collect();
+        match stopped.is_empty() {
+            true => Some(self.site.distance(from, to)),
+            false => self.site.free_space.detour(from, to, &stopped).map(|way| way.length),
+        }
+    }
+
     /// Another way to the goal than `path`, on which its link leads farther: that by its parent, pulled
     /// taut, if the parent rests and the two ways pass an obstacle on different sides. On each side a robot
     /// gets as far as its link is long; where that is nearer to the goal on the parent's side, the robot

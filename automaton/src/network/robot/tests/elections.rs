@@ -1,9 +1,12 @@
 //! Bids in the elections of leaders and recruits, and the way to the robot that calls (Algorithm 1,
 //! Remarks 5.3 and 5.4).
 
+use std::f64::consts::TAU;
+
 use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
 use super::super::super::mission::{Idle, LeaderElection, RecruitElection, Standstill};
+use super::super::super::roll::{Absent, Wreck};
 use super::*;
 
 /// Robot 0 hears that the task at `place` is announced; its way leads to the access point.
@@ -98,7 +101,41 @@ fn a_holder_that_nobody_can_relieve_bids_below_all_others() {
         leader_bid(&mut robot).expect("it competes").rank
     };
     let limit = (SERVICE_RADIUS.powi(2) - (2.1 * CLEARANCE).powi(2)).sqrt();
-    assert_eq!((rank(0.0), rank(limit - LITTLE), rank(limit + LITTLE)), (1, 1, 0));
+    assert_eq!((rank(0.0), rank(limit - LITTLE), rank(limit + LITTLE)), (2, 2, 1));
+}
+
+impl Robot {
+    /// Robots that have stopped stand all around it.
+    fn is_shut_in(&mut self) {
+        let around = |number: u8| {
+            let angle = TAU * f64::from(number) / 8.0 + 0.1;
+            let place = HERE + 0.4 * Vector::new(angle.cos(), angle.sin());
+            Wreck::heard(40 + usize::from(number), place, NOW - 9)
+        };
+        let wrecks: Vec<Wreck> = (0..8).map(around).collect();
+        let gone = wrecks.iter().map(|wreck| wreck.robot).collect();
+        self.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+        self.wrecks = Arc::new(wrecks);
+    }
+}
+
+/// It leads only if nobody else can, and the way may be open again by then.
+#[test]
+fn a_robot_that_is_shut_off_from_the_task_bids_below_all_others() {
+    let bid = |change: &dyn Fn(&mut Robot)| {
+        let mut robot = asked(east(2.0));
+        change(&mut robot);
+        let bid = leader_bid(&mut robot).expect("it competes");
+        (bid.rank, bid.merit)
+    };
+    let (free, way) = bid(&|_| {});
+    assert_eq!(free, 2);
+    assert_eq!(bid(&Robot::is_shut_in), (0, way));
+    let (rank, longer) = bid(&|robot| {
+        robot.is_shut_in();
+        Arc::make_mut(&mut robot.wrecks).drain(1..);
+    });
+    assert!(rank == 2 && longer < way, "the way round one of them is longer");
 }
 
 /// As long as news may be under way, there and back.
@@ -160,9 +197,9 @@ fn a_redundant_robot_bids_its_residual_and_then_the_shorter_path() {
         assert_eq!(route.iter().map(|hop| hop.robot).collect::<Vec<_>>(), [0, 1]);
         (bid.rank, bid.merit, bid.economy)
     };
-    assert_eq!(bid(0.0204), (2, 20, -2));
-    assert_eq!(bid(0.0206), (2, 21, -2), "in thousandths");
-    assert_eq!(bid(-0.01), (2, -10, -2));
+    assert_eq!(bid(0.0204), (3, 20, -2));
+    assert_eq!(bid(0.0206), (3, 21, -2), "in thousandths");
+    assert_eq!(bid(-0.01), (3, -10, -2));
 }
 
 #[test]
@@ -201,7 +238,7 @@ fn a_robot_that_bears_others_is_no_recruit() {
         change(&mut robot);
         recruit_bid(&mut robot).expect("it answers").map(|bid| bid.rank)
     };
-    assert_eq!(class(&|_| {}), Some(2));
+    assert_eq!(class(&|_| {}), Some(3));
     let bears = |robot: &mut Robot| robot.hears(beacon(2, west(0.5), redundant(12, 0), &[]));
     assert_eq!(class(&bears), None);
     let unknown = |robot: &mut Robot| robot.announced = None;
@@ -211,7 +248,8 @@ fn a_robot_that_bears_others_is_no_recruit() {
         robot.holds(fixed(20, 11));
         robot.hears(beacon(5, west(0.5), primary(30, None, 20), &[]));
     };
-    assert_eq!(class(&relay), Some(1));
+    assert_eq!(class(&relay), Some(2));
+    assert_eq!(class(&|robot| robot.is_shut_in()), Some(1), "no way leads to the caller");
     let two = |robot: &mut Robot| {
         relay(robot);
         robot.hears(beacon(3, north(0.5), redundant(33, 20), &[]));
