@@ -100,13 +100,14 @@ impl Robot {
         self.past_partners = Some((self.notice_id(), partners));
     }
 
-    /// Whether this robot is on a way that another could go on with.
+    /// Whether this robot is on a way that another could go on with. One that makes way for others is not.
     fn may_hand_over(&self) -> bool {
         match *self.duty {
             Duty::Shifting(Shifting { place, .. }) => {
                 let active = self.active_subgroup();
                 active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
             }
+            Duty::Following(_) if self.way_to_clear().is_some() => false,
             Duty::Following(_) | Duty::Leading(_) => match self.phase() {
                 Phase::Advance => true,
                 Phase::Shift => self.goes_on_while_recruiting(),
