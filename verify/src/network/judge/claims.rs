@@ -347,7 +347,7 @@ fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> R
     });
     let clause = match is_edge(parent) || goes_on {
         false => "which is not its parent",
-        true if !ledger.primary_team.contains(&robot) => "and is not of the primary team",
+        true if !ledger.is_or_was_primary(robot) => "and is not of the primary team",
         true => return Ok(()),
     };
     let sentence = format!("robot {robot} attaches to {parent}, {clause}");

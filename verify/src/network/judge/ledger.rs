@@ -126,6 +126,11 @@ impl Ledger {
         }
     }
 
+    /// Whether the robot is of the primary team, or was until the task was serviced and may not know yet.
+    pub fn is_or_was_primary(&self, robot: usize) -> bool {
+        self.primary_team.contains(&robot) || self.dismissed.contains(&robot)
+    }
+
     /// Whether the robot is of a primary team that calls for a recruit, or whose recruit comes: with the eager strategy
     /// it goes on meanwhile, and what it has begun before the call it ends.
     pub fn is_of_calling_team(&self, robot: usize) -> bool {
