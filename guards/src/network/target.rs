@@ -41,6 +41,11 @@ pub fn follows() -> Predicate {
     free_to_move(team_goes_on())
 }
 
+/// It has joined the primary team from afar, and has yet to change over to another access point on its way there.
+pub fn joins_over() -> Predicate {
+    follows() & proposition("before_changeover")
+}
+
 /// The primary team goes on, the task is not within reach, and no redundant robot is attached to the leader:
 /// eq. (24).
 pub fn leads() -> Predicate {

@@ -390,9 +390,21 @@ impl Robot {
             // The newcomer looks for p₁ where its link leads.
             return None;
         }
-        let (anchor, parent) = self.nearer_parent(self.build_length())?;
+        let (anchor, parent) = match self.is_before_changeover() {
+            true => self.access_point_on_the_way()?,
+            false => self.nearer_parent(self.build_length())?,
+        };
         self.reattaches_to = Some(parent);
         Some(Some(anchor))
+    }
+
+    /// The access point to which a newcomer is attached on its way over several of them to the team, if it is not yet.
+    fn access_point_on_the_way(&self) -> Option<(Anchor, NodeId)> {
+        let (hop, _) = self.way_over()?;
+        let access = *hop.crossing.get(self.index_in_crossing(&hop.crossing))?;
+        let anchor = Anchor::Access(access);
+        let node = self.neighbour_at(anchor).filter(|node| self.may_build(self.walk_to(node)))?;
+        (self.anchor() != Some(anchor)).then(|| (anchor, node.id()))
     }
 
     /// Whether a newcomer is where p₁ takes it to be, or nearer. In the paper's order p₁ stands, and the newcomer

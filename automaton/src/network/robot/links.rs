@@ -200,7 +200,7 @@ impl Robot {
     pub(super) fn keeps_link_on_the_way(&self, crossing: &[usize], from: Point, to: Point) -> bool {
         let Some(way) = self.site.free_space.geodesic(from, to) else { return false };
         let step = self.site.settings.step_radius;
-        let limit = self.hard_length() - self.clearance();
+        let limit = self.limit_of(Some(&*self.duty)) - self.clearance();
         let mut index = self.changes_over(crossing, 0, from);
         way.segments(from).all(|piece| {
             let steps = (piece.vector().norm() / step).ceil().max(1.0);

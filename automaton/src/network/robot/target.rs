@@ -8,6 +8,7 @@ use crate::automaton::TransitionError;
 use crate::law::Laws;
 use crate::located::Place as _;
 
+use super::super::duty::{Duty, Hop};
 use super::Robot;
 
 /// Where robots go, by what they do.
@@ -23,6 +24,7 @@ pub fn targets() -> Targets {
         .case(Shifting, guards::changes_over(), "next access point on Σ", Robot::next_of_crossing)
         .case(Shifting, guards::shifts(), "place ahead on Σ", Robot::reference_ahead)
         .case(Following, guards::gives_way(), "place aside for the team", Robot::place_aside)
+        .case(Following, guards::joins_over(), "next access point on Σ", Robot::next_of_crossing)
         .case(Following, guards::follows(), "robot ahead", Robot::team_goal)
         .case(Leading, guards::leads(), "task", Robot::team_goal);
     let posted = [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease];
@@ -54,9 +56,23 @@ impl Robot {
         self.next_hop().map(|hop| hop.place.reference)
     }
 
+    /// The place on Σ from which it is on its way, and where that leads: along Σ, or to the team that it has joined.
+    pub(super) fn way_over(&self) -> Option<(&Hop, Point)> {
+        match self.hop_left() {
+            Some(hop) => Some((hop, self.reference_ahead()?)),
+            None => Some((self.hop_of_newcomer()?, self.team_goal()?)),
+        }
+    }
+
+    /// Its place on Σ, if it has joined the team from there and is not attached to by the robot that it follows yet.
+    fn hop_of_newcomer(&self) -> Option<&Hop> {
+        let joins = matches!(*self.duty, Duty::Following(_)) && self.is_pending();
+        self.mission.path()?.hops.iter().find(|hop| joins && hop.robot == self.id)
+    }
+
     /// The next access point that its way along Σ passes.
     fn next_of_crossing(&self) -> Option<Point> {
-        let crossing = &self.hop_left()?.crossing;
+        let crossing = &self.way_over()?.0.crossing;
         let next = crossing.get(self.index_in_crossing(crossing) + 1)?;
         Some(self.site.access_points[*next])
     }
@@ -64,8 +80,9 @@ impl Robot {
     /// Whether it has yet to change over to another access point on Σ, and the shortest way from the place that it has
     /// left to the place ahead is out of reach of both.
     pub(super) fn is_before_changeover(&self) -> bool {
-        let places = (self.next_of_crossing(), self.hop_left(), self.reference_ahead());
-        let (Some(_), Some(hop), Some(goal)) = places else { return false };
+        let (Some(_), Some((hop, goal))) = (self.next_of_crossing(), self.way_over()) else {
+            return false;
+        };
         !self.keeps_link_on_the_way(&hop.crossing, hop.place.position, goal)
     }
 
