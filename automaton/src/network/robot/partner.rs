@@ -140,6 +140,9 @@ impl Robot {
             self.task_position(task)
                 .is_some_and(|place| near(place).norm() <= settings.arrival_radius())
         });
+        // Where the other stands for the parent itself, it does so beside this one then.
+        let reaches_parent =
+            parked.beacon.parent == Some(self.id) || self.reaches_parent(station.post.parent);
         let children_hold = self
             .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.hard_length());
@@ -153,7 +156,7 @@ impl Robot {
             && parked.beacon.reply.is_none()
             && within_reach
             && services
-            && self.reaches_parent(station.post.parent)
+            && reaches_parent
             && children_hold
     }
 

@@ -200,9 +200,13 @@ fn links_of_both_hold_when_they_have_exchanged() {
     let diagonal = |away: f64| (away * away - BESIDE * BESIDE).sqrt();
     assert!(with(diagonal(hard - LITTLE), 1.0, 1.0));
     assert!(!with(diagonal(hard + LITTLE), 1.0, 1.0), "the mover's parent is too far from it");
-    let mut lost = stuck(5);
-    lost.hears(beacon(1, east(BESIDE), redundant(11, 99), &[11, 99]));
-    assert_eq!(partner(&mut lost), None, "nobody holds the post of its parent");
+    let orphan = |parent: Option<NodeId>| {
+        let mut robot = stuck(5);
+        robot.hears(Beacon { parent, ..beacon(1, east(BESIDE), redundant(11, 99), &[11, 99]) });
+        partner(&mut robot)
+    };
+    assert_eq!(orphan(None), None, "nobody holds the post of its parent");
+    assert_eq!(orphan(Some(0)), Some(1), "the mover stands for it, and the other will");
 }
 
 #[test]
