@@ -88,7 +88,7 @@ impl fmt::Display for Mistake {
 /// Why a file cannot be read, and what would help.
 fn told(source: &std::io::Error) -> String {
     match source.kind() {
-        std::io::ErrorKind::InvalidData => "it is no UTF-8 text; save it as UTF-8".to_owned(),
+        std::io::ErrorKind::InvalidData => "it is not UTF-8 text; save it as UTF-8".to_owned(),
         _ => format!("{source}; give the path of a scenario file"),
     }
 }

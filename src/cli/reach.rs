@@ -67,7 +67,8 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
     problem.settings.horizon = arguments.horizon.unwrap_or(problem.settings.horizon);
     problem.settings.step = arguments.step.unwrap_or(problem.settings.step);
     problem.settings.clusters = arguments.clusters.unwrap_or(problem.settings.clusters);
-    let axes = axes(&problem, arguments.axes.as_deref())?;
+    let draws = arguments.svg.is_some() || arguments.axes.is_some();
+    let axes = draws.then(|| axes(&problem, arguments.axes.as_deref())).transpose()?;
     let begin = Instant::now();
     let solution = solve(&problem, arguments.quiet)?;
     let seconds = begin.elapsed().as_secs_f64();
@@ -80,7 +81,7 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
             )));
         }
     }
-    if let Some(path) = &arguments.svg {
+    if let (Some(path), Some(axes)) = (&arguments.svg, axes) {
         let runs = problem.runs(arguments.runs);
         let picture = solution.picture(&problem.system, [&axes[0], &axes[1]], &runs);
         let picture = picture.map_err(Failure::Usage)?.to_svg();

@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(values("link.full_range=0.3..0.6:7")[1..3], ["0.35", "0.4"]);
         assert_eq!(values("control.max_steps=100..500:5")[1], "200");
         assert_eq!(values("control.period=-1..1:3"), ["-1", "0", "1"]);
-        assert_eq!(values("control.max_steps=5..10:3"), ["5", "7.5", "10"]);
+        assert_eq!(values("control.period=5..10:3"), ["5", "7.5", "10"]);
         assert_eq!(values("control.routing_method=dual"), ["dual"]);
         assert_eq!(values("description=a..b: dots"), ["a..b: dots"]);
     }

@@ -4,7 +4,9 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Repair, Workspace, WorkspaceError};
+use pleach_continuous::geometry::{
+    Disc, FreeSpace, FreeSpaceError, Repair, Workspace, WorkspaceError,
+};
 use pleach_continuous::network::reliability::ReliabilityError;
 use pleach_continuous::network::{LinkReliability, WithMargin};
 use pleach_discrete::network::NodeId;
@@ -351,6 +353,15 @@ impl Site {
             return measure.distance(from, to);
         }
         self.free_space.distance(from, to)
+    }
+
+    /// The length of the shortest way around these discs; none if they close it. None of them counts where ways are not
+    /// those of the floor plan.
+    pub fn distance_around(&self, from: Point, to: Point, discs: &[Disc]) -> Option<f64> {
+        if discs.is_empty() || self.is_graph() {
+            return Some(self.distance(from, to));
+        }
+        self.free_space.detour(from, to, discs).map(|way| way.length)
     }
 
     /// The geodesic length of a link, or infinity when it is longer than any link of the tree.

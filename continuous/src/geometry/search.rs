@@ -323,6 +323,8 @@ fn narrow_passages(space: &FreeSpace, discs: &[Disc]) -> Vec<Point> {
     for (at, circle) in outer.iter().enumerate() {
         space.for_each_planning_wall_near(circle.center, circle.radius, |wall| {
             places.extend(circle.crossings(wall));
+            // Crossings on both sides of a corner may not see each other.
+            places.extend(Some(wall.from).filter(|&corner| circle.contains(corner)));
         });
         places.extend(outer[at + 1..].iter().flat_map(|other| circle.crossings_with(other)));
     }

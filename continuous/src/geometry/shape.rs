@@ -31,20 +31,21 @@ impl Disc {
         segment.distance(self.center) - self.radius
     }
 
-    /// Where the rim crosses `segment`: at most two points.
+    /// Where the rim crosses `segment`: at most two points; none if the segment is a single point.
     pub(super) fn crossings(&self, segment: &Segment) -> impl Iterator<Item = Point> + use<> {
         let (from, along) = (segment.from, segment.vector());
-        let length = along.norm_squared();
-        let foot = along.dot(&(self.center - from)) / length;
+        let square = along.norm_squared();
+        let foot = along.dot(&(self.center - from)) / square;
         let away = (from + along * foot - self.center).norm_squared();
-        let half = ((self.radius * self.radius - away) / length).sqrt();
+        let half = ((self.radius * self.radius - away) / square).sqrt();
+        // Where they do not meet, these are not numbers.
         [foot - half, foot + half]
             .into_iter()
             .filter(|share| (0.0..=1.0).contains(share))
             .map(move |share| from + along * share)
     }
 
-    /// Where the rims of two discs cross: at most two points.
+    /// Where the rims of two discs cross: at most two points; none if the discs have the same centre.
     pub(super) fn crossings_with(&self, other: &Disc) -> impl Iterator<Item = Point> + use<> {
         let (center, apart) = (self.center, other.center - self.center);
         let distance = apart.norm();

@@ -425,7 +425,9 @@ impl AccessPoint {
         } else {
             reports.below.clone()
         };
-        let is_same = *self.roster == roster && *self.connected == reports.below;
+        let is_as_connected =
+            |robot| self.connected.contains(robot) == reports.below.contains(robot);
+        let is_same = *self.roster == roster && roster.iter().all(is_as_connected);
         self.settled_rounds = if is_same { self.settled_rounds + 1 } else { 0 };
         renew(&mut self.roster, roster);
         renew(&mut self.connected, reports.below);

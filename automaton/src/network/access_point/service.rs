@@ -43,7 +43,7 @@ crate::observed! {
         rounds: point.site.settings.rounds_per_period as f64,
         /// The number of robots that take part, as far as it has heard.
         robots: point.roster.len() as f64,
-        /// Rounds for which neither the roster has changed nor which of its robots know a way to an access point.
+        /// Rounds for which the roster, and the set of its robots that know a way to an access point, have not changed.
         settled: point.settled_rounds as f64,
         /// Rounds after which robots count as gathered: more if some know no way to an access point.
         settling: point.rounds_until_gathered() as f64,

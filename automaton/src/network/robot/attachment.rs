@@ -400,8 +400,8 @@ impl Robot {
 
     /// The access point to which a newcomer is attached on its way over several of them to the team, if it is not yet.
     fn access_point_on_the_way(&self) -> Option<(Anchor, NodeId)> {
-        let (hop, _) = self.way_over()?;
-        let access = *hop.crossing.get(self.index_in_crossing(&hop.crossing))?;
+        let crossing = self.crossing()?;
+        let access = *crossing.get(self.index_in_crossing(crossing))?;
         let anchor = Anchor::Access(access);
         let node = self.neighbour_at(anchor).filter(|node| self.may_build(self.walk_to(node)))?;
         (self.anchor() != Some(anchor)).then(|| (anchor, node.id()))

@@ -222,7 +222,7 @@ facts! {
             in_active_subgroup: robot.active_subgroup().is_some(),
             /// It is off the place ahead on Σ.
             off_place_ahead: robot.is_off_place_ahead(),
-            /// It has yet to change over to another access point on its way to the place ahead on Σ.
+            /// It has yet to change over to another access point on its way, along Σ or to the team that it has joined.
             before_changeover: robot.is_before_changeover(),
             /// The primary team is the active team.
             advances: robot.phase() == Phase::Advance,

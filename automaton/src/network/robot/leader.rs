@@ -17,7 +17,7 @@ const BID_RESOLUTION: f64 = 1e-6;
 /// A replacer stands this many ρ beside the robot that it relieves.
 const BESIDE: f64 = 2.1;
 
-/// The classes of bids. A robot from which robots that have stopped close every way to the task.
+/// The classes of bids. A robot that cannot reach the task: robots that have stopped block every way.
 const SHUT_OFF: u8 = 0;
 /// One that could not be relieved of the task that it services.
 const IRREPLACEABLE: u8 = 1;
@@ -102,21 +102,26 @@ impl Robot {
     }
 
     /// The nearer to the task along the geodesic, the better; ties go to the tree of the first access point. None if
-    /// the task is out of reach. Where robots that have stopped close the way, others go first.
+    /// the task is out of reach. Where robots that have stopped block the way, others come first.
     fn leader_bid(&self, task: Point, root: usize) -> Option<Bid> {
         let target = self.site.place_to_service(task, self.position);
         let gap = (target - task).norm();
         let distance = self.site.distance(self.position, target);
         let unit = BID_RESOLUTION * self.site.usual.build;
         let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
+        if !within_reach {
+            return None;
+        }
         let open_way = self.open_way(self.position, target);
-        let rank = match self.could_be_relieved() {
-            _ if open_way.is_none() => SHUT_OFF,
-            true => FREE,
-            false => IRREPLACEABLE,
+        let rank = if open_way.is_none() {
+            SHUT_OFF
+        } else if self.could_be_relieved() {
+            FREE
+        } else {
+            IRREPLACEABLE
         };
         let merit = -(open_way.unwrap_or(distance) / unit).round() as i64;
-        within_reach.then_some(Bid { rank, merit, economy: -(root as i64) })
+        Some(Bid { rank, merit, economy: -(root as i64) })
     }
 
     /// Whether another robot beside this one could service its task as well, so that it can be

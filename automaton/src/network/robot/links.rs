@@ -5,6 +5,7 @@
 //! attached to the one before, and the break points at both ends hold the chain.
 
 use pleach_continuous::Point;
+use pleach_continuous::geometry::Geodesic;
 use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
 use super::super::duty::{Duty, Hop, Shifting};
@@ -195,10 +196,20 @@ impl Robot {
         self.site.distance(place, self.site.access_points[access])
     }
 
+    /// Whether it keeps its link on a way from a place, if it has to change over between access points.
+    pub(super) fn may_change_over_along(&self, from: Point, way: &Geodesic) -> bool {
+        self.crossing().is_none_or(|crossing| self.keeps_link_along(crossing, from, way))
+    }
+
     /// Whether the link of a robot to one of these access points after the other lasts on the shortest way between two
     /// places, with a clearance to spare.
     pub(super) fn keeps_link_on_the_way(&self, crossing: &[usize], from: Point, to: Point) -> bool {
-        let Some(way) = self.site.free_space.geodesic(from, to) else { return false };
+        let way = self.site.free_space.geodesic(from, to);
+        way.is_some_and(|way| self.keeps_link_along(crossing, from, &way))
+    }
+
+    /// As [`keeps_link_on_the_way`](Self::keeps_link_on_the_way), for a way from a place.
+    fn keeps_link_along(&self, crossing: &[usize], from: Point, way: &Geodesic) -> bool {
         let step = self.site.settings.step_radius;
         let limit = self.limit_of(Some(&*self.duty)) - self.clearance();
         let mut index = self.changes_over(crossing, 0, from);

@@ -100,7 +100,7 @@ impl Robot {
         self.past_partners = Some((self.notice_id(), partners));
     }
 
-    /// Whether this robot is on a way that another could go on with. One that makes way for others is not.
+    /// Whether this robot is on a way that another could go on with. One that makes way for the team is not.
     fn may_hand_over(&self) -> bool {
         match *self.duty {
             Duty::Shifting(Shifting { place, .. }) => {
@@ -117,8 +117,8 @@ impl Robot {
         }
     }
 
-    /// Whether the neighbour is ahead of this robot in the primary team.
-    pub(super) fn follows(&self, neighbour: &Neighbour) -> bool {
+    /// Whether this robot is anywhere behind the neighbour in the primary team.
+    pub(super) fn is_behind_in_team(&self, neighbour: &Neighbour) -> bool {
         self.is_of_team(neighbour) && is_behind(neighbour.beacon.team.as_ref(), self.team.as_ref())
     }
 

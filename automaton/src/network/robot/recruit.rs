@@ -17,7 +17,7 @@ use super::mission::{Effects, MissionEffect};
 
 /// The classes of bids. A robot that no tree connects to the caller bids only to show where it could help.
 const STRANDED: u8 = 0;
-/// A redundant robot, where robots that have stopped close the way to the caller.
+/// A redundant robot that cannot reach the caller: robots that have stopped block the way.
 const SHUT_OFF: u8 = 1;
 /// The robot whose post bears the caller and nothing else joins the team where it stands, if no other
 /// robot can come.
@@ -246,6 +246,9 @@ impl Robot {
         if !self.knows_route() {
             self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
+        if self.election.as_deref().is_some_and(|election| election.has_token(self.id)) {
+            return;
+        }
         let bid = match (&self.route, self.recruit_class()) {
             (_, None) => None,
             (Some((_, route)), Some(AT_HAND)) if !self.is_open(route) => {
@@ -290,8 +293,11 @@ impl Robot {
 
     /// Whether every robot on this way can go to the place ahead, whatever robots have stopped.
     fn is_open(&self, route: &[Hop]) -> bool {
-        let mut legs =
-            route.windows(2).map(|pair| (pair[0].place.position, pair[1].place.reference));
+        let goal = |hop: &Hop| match hop.post.is_primary() {
+            true => hop.place.position,
+            false => hop.place.reference,
+        };
+        let mut legs = route.windows(2).map(|pair| (pair[0].place.position, goal(&pair[1])));
         legs.all(|(from, to)| self.open_way(from, to).is_some())
     }
 

@@ -1,7 +1,7 @@
 //! The targets ψ_i as laws of the duty (Algorithm 2): where a robot goes at a sample.
 
 use pleach_continuous::Point;
-use pleach_discrete::network::Activity;
+use pleach_discrete::network::{Activity, Anchor};
 use pleach_guards::network::target as guards;
 
 use crate::automaton::TransitionError;
@@ -56,31 +56,40 @@ impl Robot {
         self.next_hop().map(|hop| hop.place.reference)
     }
 
-    /// The place on Σ from which it is on its way, and where that leads: along Σ, or to the team that it has joined.
-    pub(super) fn way_over(&self) -> Option<(&Hop, Point)> {
+    /// The place on Σ that it has left, and where it goes: to the place ahead, or to the team that it has joined.
+    pub(super) fn leg(&self) -> Option<(&Hop, Point)> {
         match self.hop_left() {
             Some(hop) => Some((hop, self.reference_ahead()?)),
             None => Some((self.hop_of_newcomer()?, self.team_goal()?)),
         }
     }
 
-    /// Its place on Σ, if it has joined the team from there and is not attached to by the robot that it follows yet.
+    /// The place on Σ from which it has joined the team, if the robot that it follows is not attached to it yet.
     fn hop_of_newcomer(&self) -> Option<&Hop> {
         let joins = matches!(*self.duty, Duty::Following(_)) && self.is_pending();
-        self.mission.path()?.hops.iter().find(|hop| joins && hop.robot == self.id)
+        let path = self.mission.path().filter(|_| joins)?;
+        path.hops.get(path.last_break_point())
     }
 
-    /// The next access point that its way along Σ passes.
+    /// The access points that it passes on its way, if any.
+    pub(super) fn crossing(&self) -> Option<&[usize]> {
+        self.leg().map(|(hop, _)| &hop.crossing[..]).filter(|passed| !passed.is_empty())
+    }
+
+    /// The next access point that it passes; a newcomer has to be attached to one before it goes on to the next.
     fn next_of_crossing(&self) -> Option<Point> {
-        let crossing = &self.way_over()?.0.crossing;
-        let next = crossing.get(self.index_in_crossing(crossing) + 1)?;
+        let crossing = self.crossing()?;
+        let index = self.index_in_crossing(crossing);
+        let reached = crossing.get(index).map(|&access| Anchor::Access(access));
+        let is_attached = !self.duty.is_primary() || self.anchor() == reached;
+        let next = crossing.get(index + usize::from(is_attached))?;
         Some(self.site.access_points[*next])
     }
 
-    /// Whether it has yet to change over to another access point on Σ, and the shortest way from the place that it has
-    /// left to the place ahead is out of reach of both.
+    /// Whether it has yet to change over to another access point, and the shortest way from the place that it has left
+    /// is out of reach of both.
     pub(super) fn is_before_changeover(&self) -> bool {
-        let (Some(_), Some((hop, goal))) = (self.next_of_crossing(), self.way_over()) else {
+        let (Some(_), Some((hop, goal))) = (self.next_of_crossing(), self.leg()) else {
             return false;
         };
         !self.keeps_link_on_the_way(&hop.crossing, hop.place.position, goal)

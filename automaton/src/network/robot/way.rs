@@ -15,7 +15,7 @@ use super::motion::ROUNDING;
 pub(super) const KEEP_OUT: f64 = 2.1;
 /// Bodies that rest are kept at this many ρ: gaps between them through which a robot can just pass stay open, since
 /// a body makes no way and takes part in no exchange.
-const KEEP_OUT_OF_BODIES: f64 = 2.0;
+const KEEP_OUT_OF_BODIES: f64 = 2.01;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
 /// goes straight on and exchanges duties with the robot in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
@@ -55,7 +55,12 @@ impl Robot {
                 false => free_space.detour(from, goal, &fixed).unwrap_or(direct),
             };
             match free_space.detour(from, goal, &parked) {
-                Some(round) if round.length <= direct.length + allowance => round,
+                Some(round)
+                    if round.length <= direct.length + allowance
+                        && self.may_change_over_along(from, &round) =>
+                {
+                    round
+                }
                 _ => direct,
             }
         };
@@ -78,18 +83,18 @@ impl Robot {
     /// The length of the shortest way between two places around robots that have stopped; none if they close it.
     pub(super) fn open_way(&self, from: Point, to: Point) -> Option<f64> {
         let stopped: Vec<Disc> = self.keep_out_discs(KEEP_OUT * self.clearance()).collect();
-        match stopped.is_empty() {
-            true => Some(self.site.distance(from, to)),
-            false => self.site.free_space.detour(from, to, &stopped).map(|way| way.length),
-        }
+        self.site.distance_around(from, to, &stopped)
     }
 
     /// Another way to the goal than `path`, on which its link leads farther: that by its parent, pulled
     /// taut, if the parent rests and the two ways pass an obstacle on different sides. On each side a robot
     /// gets as far as its link is long; where that is nearer to the goal on the parent's side, the robot
     /// goes back round the obstacle; where robots are `parked` in that way, only if it gains more than a
-    /// detour may cost.
+    /// detour may cost. None for a robot that changes over to another parent on its way.
     fn way_of_link(&self, path: &Geodesic, parked: &[Disc]) -> Option<Geodesic> {
+        if self.crossing().is_some() {
+            return None;
+        }
         let link = self.parent_link()?;
         let parent =
             self.neighbour(link.to).filter(|it| it.is_access_point() || it.beacon.parked)?;

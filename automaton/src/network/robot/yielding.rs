@@ -3,8 +3,8 @@
 //! Exchanging duties does not help where two robots stand beside the mouth of a corridor and
 //! neither can turn in while the other is there. A mover that has been stuck for a while says
 //! where it wants to go; a parked robot in its way moves aside, never farther than δ from the
-//! place of its post, and comes back when no mover is near. A robot that follows the primary team does so for
-//! those ahead of it: it stands in a bend, say, and the leader has to turn round there.
+//! place of its post, and comes back when no mover is near. While the primary team advances, a robot that follows it
+//! steps aside for those ahead of it, too: it stands in a bend, say, and the leader has to turn round there.
 
 use pleach_continuous::geometry::Segment;
 use pleach_continuous::{Point, Vector};
@@ -49,9 +49,9 @@ impl Robot {
     /// The place to step aside to, if a mover nearby asks for way.
     pub(super) fn place_aside(&self) -> Option<Point> {
         let asking = self.way_to_clear()?;
-        let place_held = self.duty.station().filter(|station| !station.post.is_primary());
-        let place_held = place_held.map_or(self.position, |station| station.reference);
-        let leash = self.site.settings.leash_radius().max((self.position - place_held).norm());
+        let held = self.duty.station().filter(|station| !station.post.is_primary());
+        let centre = held.map_or(self.position, |station| station.reference);
+        let leash = self.site.settings.leash_radius().max((self.position - centre).norm());
         let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
         // It does not pass the mover: there may be no room for both.
         let is_away = |step: Vector| step.dot(&(asking.from - self.position)) <= 0.0;
@@ -66,7 +66,7 @@ impl Robot {
                 let step = Vector::new(angle.cos(), angle.sin()) * PACE * f64::from(pace);
                 let place = self.position + step * self.clearance();
                 if room(place) > best.0
-                    && (place - place_held).norm() <= leash
+                    && (place - centre).norm() <= leash
                     && self.site.free_space.contains(place)
                     && begins(place).is_some_and(is_away)
                 {
@@ -91,7 +91,8 @@ impl Robot {
         let goes_past = |target: Point| {
             (target - mover.position()).dot(&(self.position - mover.position())) > 0.0
         };
-        !self.duty.is_primary() || self.follows(mover) && mover.beacon.way.is_some_and(goes_past)
+        !self.duty.is_primary()
+            || (self.is_behind_in_team(mover) && mover.beacon.way.is_some_and(goes_past))
     }
 
     /// The stretch ahead of a mover that asks for way.

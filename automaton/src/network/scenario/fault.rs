@@ -245,13 +245,15 @@ fn short(value: f64) -> String {
 
 /// A number that has been worked out, without the rounding of its last digits.
 fn rounded(value: f64) -> f64 {
-    (value * 1e12).round() / 1e12
+    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 /// Which lengths to lower, where ρ is given if the service radius follows from it.
 fn lower(clearance: Option<f64>) -> String {
     match clearance {
-        Some(clearance) => format!(", three times clearance = {clearance}; lower clearance"),
+        Some(clearance) => {
+            format!(", as clearance = {clearance} has it; lower this reliability or clearance")
+        }
         None => "; lower this reliability or service_radius".to_owned(),
     }
 }

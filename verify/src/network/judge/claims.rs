@@ -335,10 +335,12 @@ fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> R
             Some(path[place]).filter(|&behind| has_arrived(behind))
         })
     };
-    let places = |node: usize| [Some(node), partner_of(node), heir_of(node)].into_iter().flatten();
     let is_edge = |parent: usize| {
-        places(robot).any(|child| {
-            places(parent).any(|parent| scene.snapshot.tree.contains(&(child, parent)))
+        let children = [Some(robot), partner_of(robot)];
+        let parents = [Some(parent), partner_of(parent), heir_of(parent)];
+        children.into_iter().flatten().any(|child| {
+            let mut parents = parents.into_iter().flatten();
+            parents.any(|parent| scene.snapshot.tree.contains(&(child, parent)))
         })
     };
     // It may have attached to several nodes in one period, one after the other.

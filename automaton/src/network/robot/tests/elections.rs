@@ -86,7 +86,7 @@ fn who_takes_part_and_belongs_to_an_eligible_tree_competes() {
 
 /// 2.1ρ beside the holder another robot has to be within δ of the task, too.
 #[test]
-fn a_holder_that_nobody_can_relieve_bids_below_all_others() {
+fn a_holder_that_nobody_can_relieve_bids_below_those_that_can_leave() {
     let rank = |away: f64| {
         let mut robot = asked(east(1.0));
         let (id, mut known) = {
