@@ -43,6 +43,9 @@ pub struct Ledger {
     pub calls_ahead: bool,
     /// Whether a team has found no robot that can be recruited, so that links may be longer.
     pub stretched: bool,
+    /// The exchanges of duties since a recruit was called for: a path that is announced may name robots by the places
+    /// that they had before.
+    pub exchanged: Vec<[usize; 2]>,
     /// The way of a secondary team along Σ.
     pub walk: Option<Walk>,
     /// Subgroups whose arrival follows from later events and is still to be told, with their robots
@@ -95,6 +98,7 @@ impl Ledger {
             calls: false,
             calls_ahead: false,
             stretched: false,
+            exchanged: Vec::new(),
             walk: None,
             untold: Vec::new(),
         }
@@ -272,6 +276,7 @@ impl Ledger {
         (self.leader, self.awaits_release) = (Some(robot), conflict);
         self.primary_team = vec![robot];
         self.dismissed.clear();
+        self.exchanged.clear();
         Ok(())
     }
 
@@ -321,6 +326,7 @@ impl Ledger {
             return dispute(&[robot], sentence);
         }
         (self.calls, self.calls_ahead) = (true, false);
+        self.exchanged.clear();
         Ok(())
     }
 
@@ -375,13 +381,16 @@ impl Ledger {
             let sentence = format!("robot {robot} is recruited, and none is called for");
             return dispute(&[robot], sentence);
         }
-        if path.first() != Some(&robot) || path.last() != self.primary_team.first() {
+        let current = (0..=self.exchanged.len())
+            .map(|known| self.after_exchanges(path, known))
+            .find(|path| path.last() == self.primary_team.first());
+        let Some(current) = current.filter(|_| path.first() == Some(&robot)) else {
             let sentence = format!(
                 "the path {path:?} does not lead from recruit {robot} to the primary team {:?}",
                 self.primary_team
             );
             return dispute(path, sentence);
-        }
+        };
         let places: Option<Vec<usize>> =
             break_points.iter().map(|point| path.iter().position(|it| it == point)).collect();
         let last = path.len().checked_sub(if self.awaits_release { 1 } else { 2 });
@@ -397,12 +406,21 @@ impl Ledger {
         };
         self.walk = Some(Walk {
             announced: path.to_vec(),
-            path: path.to_vec(),
+            path: current,
             break_points: places,
             arrived: 0,
             is_under_way: false,
         });
         Ok(())
+    }
+
+    /// The robots in the places of a path that was found after so many of the exchanges since the call.
+    fn after_exchanges(&self, path: &[usize], known: usize) -> Vec<usize> {
+        let mut path = path.to_vec();
+        for pair in &self.exchanged[known..] {
+            path.iter_mut().for_each(|robot| swap(robot, *pair));
+        }
+        path
     }
 
     /// Algorithm 3: the subgroups move one after the other.
@@ -550,17 +568,12 @@ impl Ledger {
             );
             return dispute(&[mover, parked], sentence);
         }
-        let swap = |robot: &mut usize| match *robot {
-            it if it == mover => *robot = parked,
-            it if it == parked => *robot = mover,
-            _ => {}
-        };
-        self.primary_team.iter_mut().for_each(swap);
-        self.leader.iter_mut().for_each(swap);
-        self.serviced.values_mut().chain(self.discharging.values_mut()).for_each(swap);
-        if let Some(walk) = &mut self.walk {
-            walk.path.iter_mut().for_each(swap);
-        }
+        let pair = [mover, parked];
+        let holders = self.serviced.values_mut().chain(self.discharging.values_mut());
+        let team = self.primary_team.iter_mut().chain(&mut self.leader);
+        let walk = self.walk.iter_mut().flat_map(|walk| &mut walk.path);
+        team.chain(holders).chain(walk).for_each(|robot| swap(robot, pair));
+        self.exchanged.push(pair);
         Ok(())
     }
 
@@ -573,6 +586,15 @@ impl Ledger {
             None => format!("{what} task {task}, and none is pursued"),
         };
         dispute(&[], sentence)
+    }
+}
+
+/// Names the other of two robots where it names one.
+fn swap(robot: &mut usize, [one, other]: [usize; 2]) {
+    match *robot {
+        it if it == one => *robot = other,
+        it if it == other => *robot = one,
+        _ => {}
     }
 }
 
