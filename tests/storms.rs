@@ -287,6 +287,17 @@ fn a_leader_at_the_end_of_its_link_waits_beside_a_robot_that_has_stopped() {
     assert_eq!(end.outcome, Outcome::InsufficientRobots, "{}", end.reason);
 }
 
+/// It changes over from one access point to another. Its link to the first would take it farther on another way, on
+/// which it never comes near the second.
+#[test]
+fn a_recruit_that_changes_over_goes_where_the_next_link_reaches() {
+    let file = "tests/scenarios/another-way-than-that-of-the-link.toml";
+    let scenario = scenario_file::read(Path::new(file)).expect("it is a scenario");
+    let crash = Crash { time: 19.0, inputs: 0, back: Some(22.0) };
+    let end = end_of_mission_in_which_one_stops(&scenario, 2, crash, 600);
+    assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
+}
+
 /// They were cut off when the task was announced; those that it was announced to cannot service it alone.
 #[test]
 fn robots_that_come_back_are_asked_before_a_task_is_given_up() {

@@ -6,6 +6,7 @@ use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Crash, NodeFaults};
 use pleach::automaton::node::MessageFaults;
 use pleach::verify::network::storm::Storm;
+use std::num::IntErrorKind;
 use std::str::FromStr;
 
 /// What fails in a mission.
@@ -108,7 +109,12 @@ impl FromStr for Stop {
                 "{text:?} names no stop: write ROBOT@FROM, such as 3@40, or ROBOT@FROM..TO, such as 3@40..60"
             )
         };
-        let number = |text: &str| text.parse::<usize>().map_err(|_| wrong());
+        let number = |number: &str| {
+            number.parse::<usize>().map_err(|error| match error.kind() {
+                IntErrorKind::PosOverflow => format!("{text:?}: {number} is too large"),
+                _ => wrong(),
+            })
+        };
         let (robot, periods) = text.split_once('@').ok_or_else(wrong)?;
         let (from, to) = match periods.split_once("..") {
             Some((from, to)) => (number(from)?, Some(number(to)?)),

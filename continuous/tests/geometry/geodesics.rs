@@ -115,6 +115,25 @@ fn larger(discs: &[Disc], factor: f64) -> Vec<Disc> {
     discs.iter().map(|disc| Disc { radius: factor * disc.radius, ..*disc }).collect()
 }
 
+/// Outside the bend of a corridor, where the circle about the octagon meets two walls.
+#[test]
+fn detours_lead_through_narrow_gaps_in_bends() {
+    let turn = 0.1_f64;
+    let outer = |x: f64| 1.0 - (x - 4.0).abs() * turn;
+    let boundary =
+        ring(&[(0.0, 0.0), (8.0, 0.0), (8.0, outer(8.0)), (4.0, 1.0), (0.0, outer(0.0))]);
+    let bend = FreeSpace::new(&Workspace::new(boundary, vec![]).unwrap(), 0.1).unwrap();
+    // The free space ends at y = 0.9 at its corner, nearly.
+    let disc = |radius: f64| Disc { center: Point::new(4.0, 0.4), radius };
+    let (from, to) = (Point::new(2.5, 0.4), Point::new(5.5, 0.4));
+    for gap in [0.02, 0.01, 0.004] {
+        let nearest = 0.6 / turn.hypot(1.0) - 0.1;
+        let way = bend.detour(from, to, &[disc(nearest - gap)]);
+        assert!(way.is_some_and(|way| way.length < 4.0), "{gap}");
+    }
+    assert_eq!(bend.detour(from, to, &[disc(0.51)]), None);
+}
+
 /// Between a disc and a wall, and between two discs, where octagons about them close the gap.
 #[test]
 fn detours_lead_through_narrow_gaps() {

@@ -209,7 +209,7 @@ impl Robot {
     }
 
     /// As [`keeps_link_on_the_way`](Self::keeps_link_on_the_way), for a way from a place.
-    fn keeps_link_along(&self, crossing: &[usize], from: Point, way: &Geodesic) -> bool {
+    pub(super) fn keeps_link_along(&self, crossing: &[usize], from: Point, way: &Geodesic) -> bool {
         let step = self.site.settings.step_radius;
         let limit = self.limit_of(Some(&*self.duty)) - self.clearance();
         let mut index = self.changes_over(crossing, 0, from);

@@ -90,10 +90,10 @@ impl Robot {
     /// taut, if the parent rests and the two ways pass an obstacle on different sides. On each side a robot
     /// gets as far as its link is long; where that is nearer to the goal on the parent's side, the robot
     /// goes back round the obstacle; where robots are `parked` in that way, only if it gains more than a
-    /// detour may cost. None for a robot that changes over to another parent on its way.
+    /// detour may cost. One that changes over to other parents on its way goes by way of those.
     fn way_of_link(&self, path: &Geodesic, parked: &[Disc]) -> Option<Geodesic> {
-        if self.crossing().is_some() {
-            return None;
+        if let Some(crossing) = self.crossing() {
+            return self.way_over(crossing, path);
         }
         let link = self.parent_link()?;
         let parent =
@@ -127,6 +127,24 @@ impl Robot {
             false => HYSTERESIS,
         };
         (by_path > left(onward.length) + allowance * self.clearance()).then_some(way)
+    }
+
+    /// Another way to the goal than `path`, where that is out of reach of these access points: by way of that to which
+    /// the robot is attached and the next, pulled taut. On the way between those it always reaches one of them.
+    fn way_over(&self, crossing: &[usize], path: &Geodesic) -> Option<Geodesic> {
+        if self.keeps_link_along(crossing, self.position, path) {
+            return None;
+        }
+        let (site, space) = (&self.site, &self.site.free_space);
+        let passed = crossing.iter().skip(self.index_in_crossing(crossing)).take(2);
+        let goal = self.destination.as_ref()?.goal();
+        let mut from = self.position;
+        let mut corners = Vec::new();
+        for to in passed.map(|&access| site.access_points[access]).chain([goal]) {
+            corners.extend(space.geodesic(from, to)?.waypoints);
+            from = to;
+        }
+        Some(space.taut(self.position, &corners))
     }
 
     /// Whether its link to the robot that it follows, which `path` leads to, would exceed its limit on `way`. It is

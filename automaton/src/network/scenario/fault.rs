@@ -134,9 +134,9 @@ pub enum Problem {
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.
     #[error(
-        "no link can be added to the tree: a reliability of {build_reliability} is reached at \
+        "no link can be added to the tree: a reliability of {} is reached at \
          distance {longest:.6}, and robots may stand service_radius = {} away from their posts{}, or \
-         raise full_range", rounded(*service_radius), lower(*clearance)
+         raise full_range", rounded(*build_reliability), rounded(*service_radius), lower(*clearance)
     )]
     TreeLinksTooShort {
         build_reliability: f64,
