@@ -70,7 +70,7 @@ fn a_robot_that_joins_from_another_tree_and_does_not_get_there_says_why_not() {
     let graph = [(0, 1), (0, 3), (1, 2), (2, 3), (2, 4)];
     let places = PlaceGraph::with_branches(3, 2, &graph, &[(4, 2)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 895);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 1_141);
 }
 
 /// p₁ exchanges duties with a robot of a lower number, to whose post the parent of p₁ is
@@ -80,7 +80,7 @@ fn an_exchange_across_a_link_keeps_the_tree() {
     let graph = [(0, 1), (0, 3), (1, 4), (2, 3), (3, 4)];
     let places = PlaceGraph::with_branches(4, 1, &graph, &[(1, 1)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_910);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 2_474);
 }
 
 /// A robot begins again when its task has been announced to others: it does not take the election that it hears
@@ -90,7 +90,7 @@ fn a_robot_that_begins_again_ends_no_election_of_others() {
     let places = PlaceGraph::with_branches(3, 1, &[(0, 1), (1, 2), (2, 3)], &[(0, 1)]).unwrap();
     let faults = Faults { stops: 1, restarts: 1, ..Faults::NONE };
     let medium = Medium::Periods { faults, rounds: 4 };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 58_507);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 58_520);
 }
 
 /// A robot that waits on Σ has given its post up, and has not heard who holds it when the mission ends: the two
@@ -100,7 +100,7 @@ fn a_robot_does_not_attach_to_one_that_is_attached_to_it() {
     let graph = [(0, 4), (0, 5), (1, 2), (1, 3), (1, 4), (2, 3)];
     let places = PlaceGraph::with_branches(5, 1, &graph, &[(0, 1)]).unwrap();
     let medium = Medium::Rounds { faults: Faults { losses: 1, ..Faults::NONE }, period: None };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 2_226);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 2_227);
 }
 
 /// Two robots that are attached to a third, which becomes the leader, and hear each other: they look for
