@@ -263,17 +263,23 @@ fn a_robot_that_is_being_given_a_post_is_not_relieved_of_it() {
 /// The other would stand where it does not want to stay.
 #[test]
 fn a_member_that_makes_way_for_the_team_looks_for_no_partner() {
-    let finds = |way: Option<Point>| {
+    let follower = |way: Option<Point>| {
         let mut robot = stuck(5);
         robot.holds(primary(30, Some(31), 13));
         let report = |members: u32| Some(TeamReport { members, ..team::report(5, None, None) });
         robot.team = report(2);
         let ahead = beacon(2, east(2.05 * CLEARANCE), primary(31, None, 30), &[31, 30, 13]);
         robot.hears(Beacon { way, team: report(1), ..ahead });
-        robot.hears(parked(BESIDE));
-        partner(&mut robot)
+        robot
     };
-    assert_eq!((finds(None), finds(Some(west(1.0)))), (Some(1), None));
+    let mut follows = follower(None);
+    follows.hears(parked(BESIDE));
+    assert_eq!(partner(&mut follows), Some(1));
+    let mut makes_way = follower(Some(west(1.0)));
+    let aside = makes_way.place_aside().expect("there is room") - HERE;
+    let beside = HERE + BESIDE * aside.normalize();
+    makes_way.hears(beacon(1, beside, redundant(11, 13), &[11, 13, 14]));
+    assert_eq!(partner(&mut makes_way), None);
 }
 
 /// Two members of one team, which both mean to move, stand in the wrong order in a narrow corridor.
