@@ -326,7 +326,7 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "three robots, one stops, a message lost",
         medium: counted(Faults { losses: 1, ..ONE_STOPS }),
-        ..robots(3, Counts { configurations: 44, states: 17_749_325, transitions: 27_011_849 })
+        ..robots(3, Counts { configurations: 44, states: 17_854_847, transitions: 27_118_975 })
     },
     Campaign {
         name: "three robots, one begins again",
@@ -337,12 +337,12 @@ pub const THOROUGH: &[Campaign] = &[
         name: "four robots in a line, one stops",
         graphs: Graphs::Line,
         medium: counted(ONE_STOPS),
-        ..robots(4, Counts { configurations: 5, states: 2_310_216, transitions: 2_575_913 })
+        ..robots(4, Counts { configurations: 5, states: 2_310_266, transitions: 2_575_963 })
     },
     Campaign {
         name: "four robots in a line, one begins again",
         graphs: Graphs::Line,
         medium: counted(ONE_RESTARTS),
-        ..robots(4, Counts { configurations: 5, states: 11_433_266, transitions: 12_699_048 })
+        ..robots(4, Counts { configurations: 5, states: 11_404_196, transitions: 12_666_460 })
     },
 ];
