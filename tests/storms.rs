@@ -49,6 +49,13 @@ fn end_although_one_stops(name: &str, node: usize, crash: Crash, periods: usize)
     end_of_mission_in_which_one_stops(&in_papers_order(name), node, crash, periods)
 }
 
+/// A scenario that is kept for what happens when one of its robots stops.
+fn kept(name: &str) -> ValidScenario {
+    let file = format!("tests/scenarios/{name}.toml");
+    scenario_file::read(Path::new(&file)).expect("it is a scenario")
+}
+
+/// As [`end_although_one_stops`], in any scenario.
 fn end_of_mission_in_which_one_stops(
     scenario: &ValidScenario,
     node: usize,
@@ -269,8 +276,7 @@ fn a_robot_that_begins_again_soon_holds_nobody_up() {
 /// The access point hears it, and it is too far off for a link now that the robot between has stopped.
 #[test]
 fn a_robot_that_is_heard_and_cannot_be_attached_holds_nobody_up() {
-    let file = "tests/scenarios/in-range-without-a-link.toml";
-    let scenario = scenario_file::read(Path::new(file)).expect("it is a scenario");
+    let scenario = kept("in-range-without-a-link");
     let crash = Crash { time: 63.0, inputs: 0, back: None };
     let end = end_of_mission_in_which_one_stops(&scenario, 0, crash, 400);
     assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
@@ -280,8 +286,7 @@ fn a_robot_that_is_heard_and_cannot_be_attached_holds_nobody_up() {
 /// called for.
 #[test]
 fn a_leader_at_the_end_of_its_link_waits_beside_a_robot_that_has_stopped() {
-    let file = "tests/scenarios/narrow-gap-beside-a-robot-that-has-stopped.toml";
-    let scenario = scenario_file::read(Path::new(file)).expect("it is a scenario");
+    let scenario = kept("narrow-gap-beside-a-robot-that-has-stopped");
     let crash = Crash { time: 60.0, inputs: 0, back: None };
     let end = end_of_mission_in_which_one_stops(&scenario, 2, crash, 1_000);
     assert_eq!(end.outcome, Outcome::InsufficientRobots, "{}", end.reason);
@@ -291,8 +296,7 @@ fn a_leader_at_the_end_of_its_link_waits_beside_a_robot_that_has_stopped() {
 /// which it never comes near the second.
 #[test]
 fn a_recruit_that_changes_over_goes_where_the_next_link_reaches() {
-    let file = "tests/scenarios/another-way-than-that-of-the-link.toml";
-    let scenario = scenario_file::read(Path::new(file)).expect("it is a scenario");
+    let scenario = kept("another-way-than-that-of-the-link");
     let crash = Crash { time: 19.0, inputs: 0, back: Some(22.0) };
     let end = end_of_mission_in_which_one_stops(&scenario, 2, crash, 600);
     assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);

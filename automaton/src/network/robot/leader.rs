@@ -106,13 +106,13 @@ impl Robot {
     fn leader_bid(&self, task: Point, root: usize) -> Option<Bid> {
         let target = self.site.place_to_service(task, self.position);
         let gap = (target - task).norm();
-        let distance = self.site.distance(self.position, target);
+        let open_way = self.open_way(self.position, target);
+        let distance = open_way.unwrap_or_else(|| self.site.distance(self.position, target));
         let unit = BID_RESOLUTION * self.site.usual.build;
         let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
         if !within_reach {
             return None;
         }
-        let open_way = self.open_way(self.position, target);
         let rank = if open_way.is_none() {
             SHUT_OFF
         } else if self.could_be_relieved() {
@@ -120,7 +120,7 @@ impl Robot {
         } else {
             IRREPLACEABLE
         };
-        let merit = -(open_way.unwrap_or(distance) / unit).round() as i64;
+        let merit = -(distance / unit).round() as i64;
         Some(Bid { rank, merit, economy: -(root as i64) })
     }
 

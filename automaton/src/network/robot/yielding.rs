@@ -79,20 +79,18 @@ impl Robot {
 
     /// The stretch ahead of a mover that asks for way, if this robot stands in it.
     pub(super) fn way_to_clear(&self) -> Option<Segment> {
-        self.neighbours.iter().filter(|mover| self.makes_way_for(mover)).find_map(|mover| {
+        self.neighbours.iter().find_map(|mover| {
             let way = self.way_of(mover)?;
-            (way.distance(self.position) < PASSING * self.clearance()).then_some(way)
+            let is_in_the_way = way.distance(self.position) < PASSING * self.clearance();
+            (is_in_the_way && self.makes_way_for(mover, &way)).then_some(way)
         })
     }
 
     /// Whether the mover may ask this robot for way: of the primary team, one that goes on past it asks those that
     /// follow.
-    fn makes_way_for(&self, mover: &Neighbour) -> bool {
-        let goes_past = |target: Point| {
-            (target - mover.position()).dot(&(self.position - mover.position())) > 0.0
-        };
-        !self.duty.is_primary()
-            || (self.is_behind_in_team(mover) && mover.beacon.way.is_some_and(goes_past))
+    fn makes_way_for(&self, mover: &Neighbour, way: &Segment) -> bool {
+        let goes_past = way.vector().dot(&(self.position - way.from)) > 0.0;
+        !self.duty.is_primary() || (goes_past && self.is_behind_in_team(mover))
     }
 
     /// The stretch ahead of a mover that asks for way.

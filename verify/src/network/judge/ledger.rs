@@ -414,7 +414,8 @@ impl Ledger {
         Ok(())
     }
 
-    /// The robots in the places of a path that was found after so many of the exchanges since the call.
+    /// The path with the robots that are in its places now, if the first `known` exchanges since the call had been made
+    /// when it was found.
     fn after_exchanges(&self, path: &[usize], known: usize) -> Vec<usize> {
         let mut path = path.to_vec();
         for pair in &self.exchanged[known..] {
