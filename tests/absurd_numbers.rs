@@ -46,7 +46,7 @@ const NUMBERS: &[(&str, &[&str], &str)] = &[
     ("control.period", &[], "control.period"),
     ("control.rounds_per_period", &[], "control.rounds_per_period"),
     ("control.routing_iterations", &[], "control.routing_iterations"),
-    ("control.routing_reserve", NOTHING_OR_LITTLE, "control.routing_reserve"),
+    ("control.routing_reserve", &[], "control.routing_reserve"),
     ("control.slope_aversion", NOTHING_OR_LITTLE, "control.slope_aversion"),
     ("control.build_reliability", &[], "control.build_reliability"),
     ("control.tree_reliability", &["1e-300"], "control.tree_reliability"),

@@ -6,8 +6,8 @@ use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapsho
 use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
 use pleach::automaton::network::{Crash, NodeFaults};
 use pleach::automaton::node::MessageFaults;
-use pleach::discrete::network::Role;
 use pleach::discrete::network::activity::may_follow;
+use pleach::discrete::network::{Activity, Role};
 use pleach::mission::{Watcher, run_in_storm};
 use pleach::story;
 use pleach::summary::{Closing, Summary};
@@ -317,6 +317,9 @@ fn no_task_is_shown_as_over_that_is_not() {
     let (property, sentence) = complaint(|mission| mission.periods[150].snapshot.closed = vec![1]);
     assert_eq!(property, Property::Duties);
     assert!(sentence.contains("task 1 is shown as over, and it has neither ended"), "{sentence}");
+    let (property, sentence) = complaint(|mission| mission.periods[350].snapshot.closed.clear());
+    assert_eq!(property, Property::Duties);
+    assert!(sentence.contains("task 0 is over, and is not shown so any more"), "{sentence}");
     let (property, sentence) = complaint(|mission| mission.periods[150].snapshot.closed = vec![9]);
     assert_eq!(property, Property::Record, "{sentence}");
 }
@@ -346,6 +349,7 @@ fn a_robot_that_never_hears_that_its_task_is_over_is_told() {
             period.events.retain(|event| !is_its(event));
             let now = &mut period.snapshot;
             now.roles[robot] = Role::Leaf;
+            now.robots[robot].activity = Activity::Leaf;
             now.serviced.retain(|(task, _)| *task != 0);
             now.serviced.insert(0, (0, robot));
             now.posts.retain(|it| it.holder != robot);

@@ -87,6 +87,21 @@ fn few_rounds_are_remarked() {
     }
 }
 
+/// A move that may miss its end by as much as it is long is lawful, and worth a remark.
+#[test]
+fn moves_shorter_than_their_error_are_remarked() {
+    let text = std::fs::read_to_string("tests/scenarios/room.toml").unwrap();
+    let remarks = |step: f64| {
+        let settings =
+            ["control.motion_error=0.005".to_owned(), format!("control.step_radius={step}")]
+                .map(|setting| setting.parse::<Setting>().unwrap());
+        let scenario = parse_with(&text, Path::new("room.toml"), &settings).unwrap();
+        let keys = scenario.remarks().into_iter().map(|remark| remark.key().to_string());
+        keys.filter(|key| key == "control.step_radius").count()
+    };
+    assert_eq!((remarks(0.005), remarks(0.0051)), (1, 0));
+}
+
 /// What comes when the mission has ended does not keep it from starting.
 #[test]
 fn what_a_user_does_too_late_is_remarked() {

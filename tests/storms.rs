@@ -11,11 +11,11 @@ use pleach::automaton::network::{Crash, FaultyNode, Message, Network, NodeFaults
 use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
 use pleach::continuous::Point;
-use pleach::scenario_file;
 use pleach::verify::network::storm::{
     Judge, Kind, Storm, Verdict, allowing_for, draw, judged_run, network,
 };
 use pleach::verify::network::{Property, Violation};
+use pleach::{mission, scenario_file};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -405,6 +405,23 @@ fn missions_are_serviced_although_a_robot_restarts() {
         assert_eq!(verdict.violations, [], "{seed}");
         let end = verdict.end.unwrap_or_else(|| panic!("{seed}: it does not end"));
         assert_eq!(end.outcome, Outcome::Serviced, "{seed}: {}", end.reason);
+    }
+}
+
+/// Sums of control periods are rounded where a period is no power of two: a robot restarts at the ticks of the others
+/// all the same, and each instant is seen once.
+#[test]
+fn a_robot_restarts_at_the_tick_of_the_others() {
+    for period in [0.01, 0.3, 0.7] {
+        let mut scenario = shipped("leaf-leader").into_scenario();
+        scenario.control.period = Some(period);
+        let scenario = ValidScenario::new(scenario).unwrap();
+        let time = |step: f64| step * period;
+        let crash = Crash { time: time(50.0), inputs: 0, back: Some(time(70.0)) };
+        let nodes = vec![(3, NodeFaults { crash: Some(crash), ..NodeFaults::default() })];
+        let storm = Storm { nodes, ..Storm::default() };
+        let end = mission::run_in_storm(&scenario, &storm, &mut []).unwrap().end;
+        assert_eq!(end.outcome, Outcome::Serviced, "{period} s: {}", end.reason);
     }
 }
 

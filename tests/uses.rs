@@ -242,6 +242,7 @@ pub const USES: &[Use] = &[
         "exploration/src/network/properties.rs",
         "tree::is_rooted(&parents(protocol, state))",
     ),
+    ("locations", INSTANT, "verify/src/network/judge/mod.rs", "instant::locations(snapshot)"),
     ("parents_of", TREE, INSTANT, "tree::parents_of(&snapshot.tree, &mut parents)"),
     ("mark_connected", TREE, INSTANT, "tree::mark_connected(&links, &mut connected)"),
     ("advance", "verify/src/reach/affine.rs", "verify/src/reach/flow.rs", "steps.advance(track)"),

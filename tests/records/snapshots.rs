@@ -4,7 +4,7 @@ use super::change::{Change, changes};
 use nalgebra::vector;
 use pleach::automaton::network::record::{Route, Snapshot};
 use pleach::discrete::Location as _;
-use pleach::discrete::network::{Phase, Role};
+use pleach::discrete::network::{Activity, Phase, Role};
 
 /// A robot with this role that may not move.
 fn still(now: &Snapshot, role: Role) -> Option<usize> {
@@ -51,6 +51,12 @@ fn shift_share(now: &mut Snapshot, by: f64) {
 }
 
 pub const ALL: &[Change] = changes! {
+    "location: a relay is shown as leading the team" => |record, site| {
+        let now = record.at(site);
+        if let Some(robot) = still(now, Role::Node) {
+            now.robots[robot].activity = Activity::Leading;
+        }
+    };
     "positions: a robot that stands is shifted by 10⁻⁴" => |record, site| {
         let now = record.at(site);
         if let Some(robot) = still(now, Role::Redundant) {

@@ -3,7 +3,7 @@
 use super::change::Record;
 use nalgebra::Point2;
 use pleach::automaton::network::record::MissionEvent as Event;
-use pleach::discrete::network::{Phase, Role};
+use pleach::discrete::network::{Activity, Phase, Role};
 use pleach::verify::network::Property;
 
 pub type Spoil = (&'static str, fn(&mut Record), &'static [Property]);
@@ -79,6 +79,7 @@ pub const ALL: [Spoil; 27] = [
             for now in record.from(0) {
                 now.tree.clear();
                 now.roles.fill(Role::Redundant);
+                now.robots.iter_mut().for_each(|robot| robot.activity = Activity::Standby);
             }
             for period in &mut record.periods {
                 period.events.retain(|event| !matches!(event, Event::RoleChanged { .. }));
@@ -92,6 +93,7 @@ pub const ALL: [Spoil; 27] = [
             for now in record.from(LATE) {
                 let robot = now.serviced[0].1;
                 now.roles[robot] = Role::Redundant;
+                now.robots[robot].activity = Activity::Standby;
                 now.tree.retain(|&(child, _)| child != robot);
             }
         },

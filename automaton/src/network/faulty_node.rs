@@ -64,11 +64,21 @@ pub struct FaultyNode {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
-    /// It has not begun, or not begun again; it does at this time.
-    Waiting(f64),
+    /// It has not begun, or not begun again.
+    Waiting(Wait),
     Running,
     /// It has stopped for good.
     Gone,
+}
+
+/// The wait of a node until it begins. It counts control periods as the others do: sums of periods are rounded, and
+/// it has to begin at the very instant of their ticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wait {
+    /// When it begins, to less than half a control period.
+    begin: f64,
+    /// How long it is until its clock ticks next.
+    to_tick: f64,
 }
 
 impl std::fmt::Debug for FaultyNode {
@@ -93,7 +103,10 @@ impl FaultyNode {
             member: maker(place),
             maker,
             chance: Chance::new(seed, 0),
-            state: if begin > 0.0 { State::Waiting(begin) } else { State::Running },
+            state: match begin > 0.0 {
+                true => State::Waiting(Wait { begin, to_tick: faults.shift.max(0.0) }),
+                false => State::Running,
+            },
             has_begun: begin <= 0.0,
             true_position: place,
             time: 0.0,
@@ -132,9 +145,22 @@ impl FaultyNode {
         }
         self.faults.crash = None;
         self.state = match crash.back {
-            Some(back) => State::Waiting(on_grid(back, self.period) + self.faults.shift),
+            Some(back) => State::Waiting(Wait {
+                begin: on_grid(back, self.period) + self.faults.shift,
+                to_tick: self.member.time_to_tick().unwrap_or_default(),
+            }),
             None => State::Gone,
         };
+    }
+
+    /// Begins if the time for that has come; otherwise a tick begins another control period.
+    fn wait(&mut self, is_tick: bool) {
+        let State::Waiting(Wait { begin, to_tick }) = &mut self.state else { return };
+        if *to_tick <= 0.0 && self.time > *begin - self.period / 2.0 {
+            self.begin();
+        } else if is_tick {
+            *to_tick = self.period;
+        }
     }
 
     fn begin(&mut self) {
@@ -184,11 +210,7 @@ impl Node for FaultyNode {
         input: Input<'_, Message, Sense>,
         outputs: &mut Outputs<Message, MissionEvent>,
     ) -> Result<(), RobotError> {
-        if let State::Waiting(begin) = self.state
-            && self.is_at(begin)
-        {
-            self.begin();
-        }
+        self.wait(matches!(input, Input::Tick { .. }));
         self.crash_if_due();
         if self.state != State::Running {
             return match input {
@@ -207,7 +229,7 @@ impl Node for FaultyNode {
 
     fn time_to_tick(&self) -> Option<f64> {
         match self.state {
-            State::Waiting(begin) => Some((begin - self.time).max(0.0)),
+            State::Waiting(Wait { to_tick, .. }) => Some(to_tick),
             State::Running => self.member.time_to_tick(),
             State::Gone => None,
         }
@@ -215,6 +237,9 @@ impl Node for FaultyNode {
 
     fn flow(&mut self, duration: f64) {
         self.time += duration;
+        if let State::Waiting(Wait { to_tick, .. }) = &mut self.state {
+            *to_tick = (*to_tick - duration).max(0.0);
+        }
         if self.state != State::Running {
             return;
         }

@@ -5,6 +5,7 @@
 
 use pleach_automaton::network::record::Snapshot;
 use pleach_continuous::Point;
+use pleach_discrete::Location as _;
 
 use super::extremes::Extreme;
 use super::limits::{Limits, SLACK};
@@ -130,6 +131,27 @@ fn team_fault(snapshot: &Snapshot) -> Option<String> {
     ];
     let (name, _) = teams.into_iter().find(|(_, team)| !team::has_no_repetition(team))?;
     Some(format!("{name} names a robot twice"))
+}
+
+/// Part of [`Property::Record`]: each robot is at a location of the duty automaton that has its role.
+///
+/// # Errors
+///
+/// The first robot that is not.
+pub fn locations(snapshot: &Snapshot) -> Result<(), Violation> {
+    let mut robots = snapshot.robots.iter().zip(&snapshot.roles).enumerate();
+    match robots.find(|(_, (shown, role))| !shown.activity.can_be(**role)) {
+        None => Ok(()),
+        Some((robot, (shown, role))) => {
+            let sentence = format!(
+                "robot {robot} is shown as {}, and no robot at “{}” is one",
+                role.name(),
+                shown.activity.name()
+            );
+            let now = Instant::of(snapshot);
+            Err(now.violation(Property::Record, &[robot], (0.0, 1.0), sentence))
+        }
+    }
 }
 
 /// [`Property::Reliability`].

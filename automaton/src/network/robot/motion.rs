@@ -259,9 +259,10 @@ impl Robot {
     fn link_disc(&self, link: &TreeLink) -> Option<Disc> {
         let neighbour = self.neighbour(link.to)?;
         let path = self.site.free_space.geodesic(self.position, neighbour.position())?;
-        let spare = match path.length > link.limit {
+        let is_too_long = path.length > link.limit * (1.0 + ROUNDING);
+        let spare = match is_too_long {
             true => -self.site.settings.errors.motion,
-            false => link.limit - path.length,
+            false => (link.limit - path.length).max(0.0),
         };
         let corner = self.next_corner(&path)?;
         let radius = ((corner - self.position).norm() + spare).max(0.0);

@@ -158,10 +158,10 @@ impl Robot {
         if !is_overloaded && overstretched.is_none() {
             return true;
         }
-        let receives = |node| is_overloaded && self.routes().any(|link| link.to == node);
+        let overloading = if is_overloaded { self.overloading_movers(own) } else { Vec::new() };
         let period = self.period;
         for &(mover, _) in &self.heard_moves {
-            if overstretched == Some(mover) || receives(mover) {
+            if overstretched == Some(mover) || overloading.contains(&mover) {
                 outputs.send(mover, Message::Objection { period });
             }
         }
@@ -214,13 +214,41 @@ impl Robot {
     }
 
     fn is_overloaded(&self, own: Segment) -> bool {
+        self.is_too_much(self.worst_load_without(own, &[]))
+    }
+
+    fn is_too_much(&self, worst: f64) -> bool {
+        !is_acceptable(worst, self.load() + ROUNDING)
+    }
+
+    /// Its load at worst if these of the nodes to which it sends stay where they are.
+    fn worst_load_without(&self, own: Segment, staying: &[NodeId]) -> f64 {
         let own = self.reach_of(own, self.is_parked());
-        let worst = self.worst_load(own, |node| {
+        self.worst_load(own, |node| {
             let rests = |known: &Neighbour| known.is_access_point() || known.beacon.parked;
             let is_parked = self.neighbour(node).is_none_or(rests);
-            self.reach_of(self.move_of(node), is_parked)
-        });
-        !is_acceptable(worst, self.load() + ROUNDING)
+            let whole = self.move_of(node);
+            let stays = staying.contains(&node);
+            self.reach_of(if stays { Segment::still(whole.from) } else { whole }, is_parked)
+        })
+    }
+
+    /// The receivers whose moves add most to its load, as many as would have to stay for it not to be overloaded. A
+    /// robot whose least move is too much, since the reliability of its link falls steeply there, holds up no other.
+    fn overloading_movers(&self, own: Segment) -> Vec<NodeId> {
+        let receives = |mover: &NodeId| self.routes().any(|link| link.to == *mover);
+        let movers = self.heard_moves.iter().map(|&(mover, _)| mover).filter(receives);
+        let mut by_share: Vec<(f64, NodeId)> =
+            movers.map(|mover| (self.worst_load_without(own, &[mover]), mover)).collect();
+        by_share.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        let mut staying = Vec::new();
+        for (_, mover) in by_share {
+            staying.push(mover);
+            if !self.is_too_much(self.worst_load_without(own, &staying)) {
+                break;
+            }
+        }
+        staying
     }
 
     /// By how much at least each end that moves has to shorten a link of this length. What measurements

@@ -100,7 +100,7 @@ impl Robot {
             let reliability = neighbour.reliability;
             let in_tree = tree.iter().any(|link| link.to == to);
             let known = link_at(&old, to).map(|at| &old[at]);
-            let at_worst = self.site.link.reliability(neighbour.distance + self.stray());
+            let at_worst = self.site.link.reliability(neighbour.distance + 2.0 * self.stray());
             let is_retiring = at_worst < LEAST_USEFUL_RELIABILITY && !in_tree;
             if is_retiring && !self.sends_to(to) || reliability <= 0.0 {
                 continue;

@@ -16,6 +16,18 @@ pub enum RoutingMethod {
     Adal,
 }
 
+impl RoutingMethod {
+    /// The least η, as a share of the radio's rate. A robot grants only what its own flows carry, and routes change by
+    /// what is left over: where that is nothing, teams stand still that have room. The routes of ADAL go round in
+    /// circles before they have settled, and flows in a circle end with their leases, so that more has to be left.
+    pub const fn least_reserve(self) -> f64 {
+        match self {
+            RoutingMethod::Dual | RoutingMethod::AcceleratedDual => 0.0005,
+            RoutingMethod::Adal => 0.005,
+        }
+    }
+}
+
 /// How the motion problem (21)–(22) is solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -132,8 +144,8 @@ pub enum Values {
     Time(f64, f64, fn(&Control) -> Option<f64>),
     /// A number from 0 to this one.
     UpTo(f64, fn(&Control) -> Option<f64>),
-    /// A share of the radio's rate, from 0 to 1.
-    Share(fn(&Control) -> Option<f64>),
+    /// A share of the radio's rate, at least [what the routing method needs](RoutingMethod::least_reserve) and at most 1.
+    Reserve(fn(&Control) -> Option<f64>),
     /// A reliability above 0 and below 1.
     Reliability(fn(&Control) -> Option<f64>),
     /// A whole number from 1 to this one.
@@ -166,7 +178,7 @@ pub const CONTROL: &[ControlKey] = &[
     key("rounds_per_period", Values::Count(10_000, |control| control.rounds_per_period)),
     key("routing_method", Values::OneOf(&["dual", "accelerated_dual", "adal"])),
     key("routing_iterations", Values::Count(10_000, |control| control.routing_iterations)),
-    key("routing_reserve", Values::Share(|control| control.routing_reserve)),
+    key("routing_reserve", Values::Reserve(|control| control.routing_reserve)),
     key("slope_aversion", Values::UpTo(1e6, |control| control.slope_aversion)),
     key("build_reliability", Values::Reliability(|control| control.build_reliability)),
     key("tree_reliability", Values::Reliability(|control| control.tree_reliability)),
@@ -192,7 +204,7 @@ impl Values {
             | Values::Error(stated)
             | Values::Time(_, _, stated)
             | Values::UpTo(_, stated)
-            | Values::Share(stated)
+            | Values::Reserve(stated)
             | Values::Reliability(stated) => stated(control),
             Values::Count(..) | Values::OneOf(_) => None,
         }

@@ -83,6 +83,12 @@ pub enum Problem {
     /// A rate or reserve outside [0, 1].
     #[error("{} is not a share of the radio's rate: it must lie from 0 to 1", short(*value))]
     NotAShare { value: f64 },
+    /// η too small.
+    #[error(
+        "{} leaves too little over for routes of this routing_method to change while robots move: at least {least}",
+        short(*value)
+    )]
+    ReserveTooSmall { value: f64, least: f64 },
     /// A reliability that makes no sense as a limit for links of the tree.
     #[error(
         "{} does not lie between 0 and 1: a link of the tree needs a reliability above 0 and, to \

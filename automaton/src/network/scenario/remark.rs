@@ -54,6 +54,13 @@ pub enum Remark {
     },
     /// Nothing is to be done.
     NoTask,
+    /// A move may miss its end by more than it is long: robots get on by chance.
+    ShortMoves {
+        /// σ, which no move is longer than.
+        step_radius: f64,
+        /// By how much moves may be off.
+        motion_error: f64,
+    },
     /// A control period may end amid an exchange of duties, and the mission is judged as one with late messages.
     ShortPeriods {
         /// How many rounds it has.
@@ -108,6 +115,7 @@ impl Remark {
                 })
             }
             Remark::NoTask => KeyPath::root().key("task"),
+            Remark::ShortMoves { .. } => KeyPath::root().key("control").key("step_radius"),
             Remark::ShortPeriods { .. } | Remark::FewRounds { .. } => {
                 KeyPath::root().key("control").key("rounds_per_period")
             }
@@ -162,6 +170,13 @@ impl fmt::Display for Remark {
             Remark::NoTask => {
                 formatter.write_str("there is none: the mission ends at once; add [[task]]")
             }
+            Remark::ShortMoves { step_radius, motion_error } => write!(
+                formatter,
+                "{step_radius} is not more than motion_error, {motion_error}: a move may miss its end by more than it \
+                 is long, and robots may stand in each other's way for good; a step_radius of {} or more lets them \
+                 get on",
+                2.0 * motion_error
+            ),
             Remark::ShortPeriods { rounds } => write!(
                 formatter,
                 "{rounds}, and an exchange of duties takes up to {}: a control period may end during one, and the \
@@ -214,12 +229,17 @@ impl ValidScenario {
         let rounds = site.settings.rounds_per_period;
         let short =
             (!site.settings.has_rounds_for_exchanges()).then_some(Remark::ShortPeriods { rounds });
+        let short_moves = site.settings.moves_may_miss().then_some(Remark::ShortMoves {
+            step_radius: site.settings.step_radius,
+            motion_error: site.settings.errors.motion,
+        });
         let few = (rounds < ROUNDS_TO_BE_HEARD).then_some(Remark::FewRounds { rounds });
         tasks
             .chain(self.late_remarks())
             .chain(outline)
             .chain(long)
             .chain(walls)
+            .chain(short_moves)
             .chain(short)
             .chain(few)
             .collect()

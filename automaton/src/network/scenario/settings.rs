@@ -154,6 +154,12 @@ impl Settings {
         self.arrival_radius() - self.errors.motion
     }
 
+    /// Whether a move may miss its end by as much as it is long at most.
+    pub fn moves_may_miss(&self) -> bool {
+        let motion = self.errors.motion;
+        motion > 0.0 && motion >= self.step_radius
+    }
+
     /// 2e: by how much a link may be longer than its ends measure it.
     pub fn link_margin(&self) -> f64 {
         2.0 * self.errors.position

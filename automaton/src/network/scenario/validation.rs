@@ -3,7 +3,8 @@
 use super::control::{CONTROL, FARTHEST, MOST_PERIODS, SHORTEST, Values};
 use super::radio::STEEPEST;
 use super::{
-    Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, Scenario, Settings, Teams,
+    Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, RoutingMethod, Scenario, Settings,
+    Teams,
 };
 
 /// Two robots 2ρ apart must both be able to service while they hand over a task; they approach
@@ -187,7 +188,9 @@ fn control_problem(values: Values, scenario: &Scenario, range: f64) -> Option<Pr
         }
         Values::Time(least, most, stated) => length_problem(stated(control)?, least, most),
         Values::UpTo(most, stated) => zero_or_more_problem(stated(control)?, most),
-        Values::Share(stated) => share_problem(stated(control)?),
+        Values::Reserve(stated) => {
+            reserve_problem(stated(control)?, control.routing_method.unwrap_or_default())
+        }
         Values::Reliability(stated) => {
             let value = stated(control)?;
             (value <= 0.0 || value >= 1.0).then_some(Problem::NotAReliability { value })
@@ -243,6 +246,13 @@ fn steepness_problem(link: &LinkRanges) -> Option<Problem> {
 
 fn share_problem(value: f64) -> Option<Problem> {
     (!(0.0..=1.0).contains(&value)).then_some(Problem::NotAShare { value })
+}
+
+fn reserve_problem(value: f64, method: RoutingMethod) -> Option<Problem> {
+    let least = method.least_reserve();
+    let is_too_small = (0.0..least).contains(&value);
+    let too_small = Problem::ReserveTooSmall { value, least };
+    if is_too_small { Some(too_small) } else { share_problem(value) }
 }
 
 /// Tables without a row, and tables and polygons with too many.

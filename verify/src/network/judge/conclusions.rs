@@ -188,7 +188,7 @@ impl Conclusions {
         states::multipliers_are_prices(scene)?;
         posts::holders_hold(snapshot)?;
         posts::tasks_agree(snapshot)?;
-        posts::closings_are_told(ledger, snapshot)?;
+        posts::closings_are_told(ledger, scene)?;
         // Robots that have given up hold no team and no place of Σ any more.
         if snapshot.phase == Phase::Ended {
             self.ended.get_or_insert(snapshot.step);

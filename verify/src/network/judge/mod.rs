@@ -45,6 +45,7 @@ use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, Role};
 
 use super::extremes::Extremes;
+use super::instant;
 use super::limits::Limits;
 use super::monitor::Monitor;
 use super::property::Property;
@@ -194,6 +195,7 @@ impl<'a> Judge<'a> {
         self.enter_all(events, snapshot).map_err(|dispute| dispute.at(now))?;
         self.tasks_are_closed(snapshot).map_err(|dispute| dispute.at(now))?;
         self.conclude_period(snapshot, events).map_err(|dispute| dispute.at(now))?;
+        instant::locations(snapshot)?;
         self.recent.push_back(snapshot.positions.clone());
         if self.recent.len() > RECENT {
             self.recent.pop_front();

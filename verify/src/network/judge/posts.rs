@@ -4,7 +4,7 @@ use pleach_automaton::network::record::{PostView, Snapshot};
 use pleach_discrete::network::Role;
 
 use super::ledger::Ledger;
-use super::{Dispute, task_or_none};
+use super::{Dispute, Scene, task_or_none};
 use crate::network::property::Property;
 
 /// A robot that answers for a task is in the tree, and a leaf or the leader that is not yet
@@ -120,14 +120,21 @@ pub fn serve_what_is_open(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Di
     }
 }
 
-/// Part of [`Property::Duties`]: no task is shown as over that has not ended or been taken back.
-pub fn closings_are_told(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
-    match snapshot.closed.iter().find(|task| !ledger.closed.contains(task)) {
+/// Part of [`Property::Duties`]: no task is shown as over that has not ended or been taken back, and none that was
+/// shown so is open again.
+pub(super) fn closings_are_told(ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
+    let closed = &scene.snapshot.closed;
+    if let Some(task) = closed.iter().find(|task| !ledger.closed.contains(task)) {
+        let sentence = format!(
+            "task {task} is shown as over, and it has neither ended nor been taken back: no event says so"
+        );
+        return Err(Dispute::of(Property::Duties, &[], sentence));
+    }
+    let before = scene.previous.iter().flat_map(|previous| &previous.closed);
+    match before.into_iter().find(|task| !closed.contains(task)) {
         None => Ok(()),
         Some(task) => {
-            let sentence = format!(
-                "task {task} is shown as over, and it has neither ended nor been taken back: no event says so"
-            );
+            let sentence = format!("task {task} is over, and is not shown so any more");
             Err(Dispute::of(Property::Duties, &[], sentence))
         }
     }

@@ -68,6 +68,7 @@ impl Safety {
         self.observe_period(snapshot)?;
         instant::shares(snapshot, &self.limits)?;
         self.claims.observe(snapshot, events, &self.limits).map_err(told)?;
+        instant::locations(snapshot)?;
         // What flows to a node that does not run is lost.
         if self.claims.all_run() {
             relayed(snapshot, &self.limits)?;

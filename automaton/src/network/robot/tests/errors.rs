@@ -333,6 +333,21 @@ fn a_link_that_is_far_too_long_truly_gets_no_longer() {
     assert!(accepts(long, enough, enough) && !accepts(long, enough, short));
 }
 
+/// A link at its limit is not too long, whichever way its length is rounded: the robot goes on towards the other end.
+#[test]
+fn a_link_is_at_its_limit_in_spite_of_rounding() {
+    let goes_on = |longer: f64| {
+        let mut robot = unsure();
+        robot.holds(Post { parent: Some(Anchor::Post(PostId(13))), ..primary(30, None, 13) });
+        let length = robot.build_length() * (1.0 + longer);
+        robot.hears(beacon(5, east(length), fixed(13, 14), &[13, 14]));
+        robot.remember_parent();
+        let problem = robot.motion_problem(east(length));
+        problem.admits(&robot.position)
+    };
+    assert!(goes_on(0.0) && goes_on(1e-15) && !goes_on(1e-6));
+}
+
 /// Where a robot may be within a disc, a sender reckons with the farthest place.
 #[test]
 fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
@@ -364,7 +379,7 @@ fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
     assert!(!objects(anew - 1e-4, 1.2, false) && objects(anew + 1e-4, 1.2, false));
 }
 
-/// A link of which errors could leave too little after a move carries nothing.
+/// A link of which errors could leave too little after moves of both its ends carries nothing.
 #[test]
 fn links_are_as_reliable_as_errors_leave_them() {
     let is_used = |away: f64| {
@@ -374,6 +389,6 @@ fn links_are_as_reliable_as_errors_leave_them() {
         !robot.links.is_empty()
     };
     let site = Arc::clone(&unsure().site);
-    let limit = site.link.distance_at(0.3) - (2.0 * POSITION_ERROR + MOTION_ERROR);
+    let limit = site.link.distance_at(0.3) - 2.0 * (2.0 * POSITION_ERROR + MOTION_ERROR);
     assert!(is_used(limit - 1e-3) && !is_used(limit + 1e-3), "{limit}");
 }

@@ -7,7 +7,7 @@ use super::super::super::message::Message;
 use super::super::super::roll::{Absent, Roll, Wreck};
 use super::super::reservation::{FlowGrant, RequestNumber};
 use super::*;
-use crate::node::Outputs;
+use crate::node::{Destination, Outputs};
 
 /// The leader on its way to the east, called by the roll, and attached to none.
 pub(super) fn mover() -> Robot {
@@ -392,6 +392,40 @@ fn a_sender_objects_to_a_move_of_its_receiver_that_overloads_it() {
         .expect("it moves");
     assert!(judged(0.9, limit).is_empty());
     assert!(matches!(judged(0.9, limit + 2e-4)[..], [Message::Objection { .. }]));
+}
+
+/// Of two receivers, a sender objects to the one whose move adds most to its load, if it is not overloaded without
+/// that; to both if either alone is too much.
+#[test]
+fn a_sender_objects_to_no_more_moves_than_it_has_to() {
+    let told = |first: f64, second: f64| -> Vec<NodeId> {
+        let mut robot = robot();
+        robot.holds(fixed(20, 99));
+        for node in [5, 6] {
+            robot.hears(beacon(node, west(1.2), fixed(node as u32, 14), &[14]));
+        }
+        robot.survey_links();
+        for (at, node) in [(0, 5), (1, 6)] {
+            robot.links[at].share = 0.45;
+            robot.held_flow(node).flow = 0.45 * robot.links[at].reliability;
+        }
+        robot.begin_negotiation();
+        for (node, away) in [(5, first), (6, second)] {
+            robot.hear_proposal(node, Segment { from: west(1.2), to: west(1.2 + away) }, None);
+        }
+        let mut outputs = Outputs::of(0);
+        robot.judge_moves(&mut outputs);
+        let sent = outputs.drain_sent();
+        sent.map(|envelope| match (envelope.to, envelope.message) {
+            (Destination::One(to), Message::Objection { .. }) => to,
+            other => panic!("{other:?}"),
+        })
+        .collect()
+    };
+    assert_eq!(told(0.25, -0.05), [5]);
+    assert_eq!(told(-0.05, 0.25), [6]);
+    assert_eq!(told(0.01, 0.25), [6], "what the other adds does no harm by itself");
+    assert_eq!(told(0.25, 0.26), [5, 6]);
 }
 
 #[test]
