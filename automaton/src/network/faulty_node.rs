@@ -237,11 +237,13 @@ impl Node for FaultyNode {
 
     fn flow(&mut self, duration: f64) {
         self.time += duration;
-        if let State::Waiting(Wait { to_tick, .. }) = &mut self.state {
-            *to_tick = (*to_tick - duration).max(0.0);
-        }
-        if self.state != State::Running {
-            return;
+        match &mut self.state {
+            State::Waiting(Wait { to_tick, .. }) => {
+                *to_tick = (*to_tick - duration).max(0.0);
+                return;
+            }
+            State::Gone => return,
+            State::Running => {}
         }
         let before = self.member.body();
         self.member.flow(duration);
