@@ -9,7 +9,8 @@
 //! `cargo run --release --example storm -- table SEEDS [KIND]` prints a table of what becomes of
 //! missions under each kind of storm, and of what breaks.
 //!
-//! `--strategy paper` and `--strategy eager` say when recruits are called for. Without it that is what the scenario
+//! `--settings` draws the settings of missions as well. `--strategy paper` and `--strategy eager` say when recruits
+//! are called for. Without it that is what the scenario
 //! says: in the studies the paper's order, elsewhere the default.
 
 #[path = "../tests/floor_plans/mod.rs"]
@@ -19,7 +20,9 @@ mod say;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
-use floor_plans::in_storms::{self, SHIPPED, mission_in_storm, shipped};
+use floor_plans::in_storms::{
+    self, SHIPPED, mission_in_storm, mission_with_settings_in_storm, shipped,
+};
 use floor_plans::strategies;
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
@@ -52,6 +55,9 @@ struct CommandLine {
     /// When recruits are called for: paper or eager
     #[arg(long, global = true, value_parser = strategies::named)]
     strategy: Option<Strategy>,
+    /// Draw the settings of missions as well: lengths, rounds, periods, rates, routing
+    #[arg(long, global = true)]
+    settings: bool,
 }
 
 #[derive(Subcommand)]
@@ -98,24 +104,28 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<ExitCode, Box<dyn Error>> {
-    let CommandLine { command, missions, first, strategy } = CommandLine::parse();
+    let CommandLine { command, missions, first, strategy, settings } = CommandLine::parse();
+    let mission = |seed| mission(seed, strategy, settings);
     match command {
         Some(Command::One { scenario, kind, seed }) => {
             one(strategies::following(strategy, shipped(&scenario)), kind, seed)?;
         }
         Some(Command::Seed { seed }) => {
-            let (scenario, storm) = mission(seed, strategy);
+            let (scenario, storm) = mission(seed);
             tell_in_full(&scenario, seed, &storm, MOST_PERIODS)?;
         }
         Some(Command::Table { seeds, kind }) => table(seeds, kind.as_deref(), strategy)?,
-        None => return many(first, missions.unwrap_or_default(), strategy),
+        None => return many(first, missions.unwrap_or_default(), mission),
     }
     Ok(ExitCode::SUCCESS)
 }
 
 /// The mission of a seed with this strategy, and its storm.
-fn mission(seed: u64, strategy: Option<Strategy>) -> (ValidScenario, Storm) {
-    let (scenario, storm) = mission_in_storm(seed);
+fn mission(seed: u64, strategy: Option<Strategy>, settings: bool) -> (ValidScenario, Storm) {
+    let (scenario, storm) = match settings {
+        true => mission_with_settings_in_storm(seed),
+        false => mission_in_storm(seed),
+    };
     (strategies::following(strategy, scenario), storm)
 }
 
@@ -291,7 +301,11 @@ fn tell_in_full(
 }
 
 /// Runs missions on all cores, and tells the first that breaks a promise.
-fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCode, Box<dyn Error>> {
+fn many(
+    first: u64,
+    missions: u64,
+    mission: impl Fn(u64) -> (ValidScenario, Storm) + Sync,
+) -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
     let last =
         first.checked_add(missions).ok_or("the last mission would have no seed: begin earlier")?;
@@ -299,7 +313,7 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
     let (mut under_way, mut broken) = (Vec::new(), Vec::new());
     let (done, failed) = (AtomicU64::new(0), AtomicU64::new(0));
     let run = |seed: u64| -> Result<(u64, Verdict), String> {
-        let (scenario, storm) = mission(seed, strategy);
+        let (scenario, storm) = mission(seed);
         let verdict = judged_run(&scenario, &storm, MOST_PERIODS);
         let breaks = verdict.as_ref().is_ok_and(|verdict| !verdict.violations.is_empty());
         let failed = failed.fetch_add(u64::from(breaks), Ordering::Relaxed) + u64::from(breaks);
@@ -320,7 +334,7 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
             }
             if !verdict.violations.is_empty() {
                 if broken.is_empty() {
-                    let (scenario, storm) = mission(seed, strategy);
+                    let (scenario, storm) = mission(seed);
                     tell(&scenario, &storm, &verdict)?;
                 }
                 broken.push((seed, verdict.violations[0].property.name()));
