@@ -246,6 +246,7 @@ fn a_folder_and_a_mistake_run_nothing() {
     let said = said(&output.stderr);
     assert!(said.contains("faulty/clearance-zero.toml:12:13"), "{said}");
     assert!(said.contains("faulty/unknown-key.toml:"), "{said}");
+    assert!(said.contains("faulty/not-utf-8.toml: cannot be read: it is not UTF-8 text"), "{said}");
 }
 
 #[test]

@@ -26,14 +26,6 @@ fn every_faulty_scenario_is_refused_with_a_clear_message() {
     }
 }
 
-#[test]
-fn a_file_that_is_no_text_is_refused() {
-    let error = read(Path::new("tests/scenarios/not-utf-8.toml")).unwrap_err();
-    let said =
-        "tests/scenarios/not-utf-8.toml: cannot be read: it is not UTF-8 text; save it as UTF-8";
-    assert_eq!(error.to_string(), said);
-}
-
 /// What touches is no mistake: it is told how it is taken, and the mission is run on it.
 #[test]
 fn scenarios_whose_polygons_touch_are_taken_with_a_note() {

@@ -20,8 +20,7 @@ use std::path::{Path, PathBuf};
 /// Checks scenarios one after another, and draws their starts.
 pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
     let mut worst = Status::Done;
-    let mut mistakes = Vec::new();
-    let sources = Source::all(&arguments.scenarios)?;
+    let (sources, mut mistakes) = Source::all(&arguments.scenarios)?;
     let count = count_runs(sources.len(), &arguments.set, 1)?;
     let mut number = 0;
     for source in sources {

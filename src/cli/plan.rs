@@ -44,7 +44,7 @@ pub struct Planned {
 /// Every run that the arguments ask for. All scenarios are read before any of them runs, and all
 /// mistakes in them are told.
 pub fn plan(arguments: &RunArguments) -> Result<Vec<Planned>, Failure> {
-    let sources = Source::all(&arguments.scenarios)?;
+    let (sources, mut mistakes) = Source::all(&arguments.scenarios)?;
     let repeats = arguments.repeat.map_or(1, |it| usize::try_from(it).unwrap_or(usize::MAX));
     let count = count_runs(sources.len(), &arguments.set, repeats)?;
     let combinations = Sweep::combinations(&arguments.set);
@@ -53,7 +53,6 @@ pub fn plan(arguments: &RunArguments) -> Result<Vec<Planned>, Failure> {
         Some(repeats) => (0..repeats).map(|run| Some(arguments.seed.wrapping_add(run))).collect(),
     };
     let mut runs = Vec::with_capacity(count);
-    let mut mistakes = Vec::new();
     for source in &sources {
         for settings in &combinations {
             let scenario = match source.parse(settings) {

@@ -4,7 +4,7 @@ use super::status::Failure;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::scenario_file::{self, ScenarioError, Setting};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 /// The name that stands for standard input or output.
@@ -33,34 +33,38 @@ pub struct Source {
 
 impl Source {
     /// The sources that the paths name: `-` the standard input, a folder its TOML files in order
-    /// of their names.
-    pub fn all(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
-        let mut sources = Vec::new();
+    /// of their names. Beside them, those that cannot be read.
+    pub fn all(paths: &[PathBuf]) -> Result<(Vec<Self>, Vec<ScenarioError>), Failure> {
+        let (mut sources, mut unreadable) = (Vec::new(), Vec::new());
         for path in paths {
-            if is_standard(path) {
-                sources.push(Self::standard_input()?);
-            } else if path.is_dir() {
-                let files = files_of(path)?;
-                sources.extend(files.into_iter().map(Self::file).collect::<Result<Vec<_>, _>>()?);
-            } else {
-                sources.push(Self::file(path.clone())?);
+            let found = match path {
+                path if is_standard(path) => vec![Self::standard_input()],
+                path if path.is_dir() => files_of(path)?.into_iter().map(Self::file).collect(),
+                path => vec![Self::file(path.clone())],
+            };
+            for source in found {
+                match source {
+                    Ok(source) => sources.push(source),
+                    Err(error) => unreadable.push(error),
+                }
             }
         }
-        Ok(sources)
+        Ok((sources, unreadable))
     }
 
-    fn file(name: PathBuf) -> Result<Self, Failure> {
-        let unreadable = |source| ScenarioError::Unreadable { path: name.clone(), source };
-        let text = std::fs::read_to_string(&name).map_err(unreadable)?;
-        Ok(Self { name, text })
+    fn file(name: PathBuf) -> Result<Self, ScenarioError> {
+        match std::fs::read_to_string(&name) {
+            Ok(text) => Ok(Self { name, text }),
+            Err(source) => Err(ScenarioError::Unreadable { path: name, source }),
+        }
     }
 
-    fn standard_input() -> Result<Self, Failure> {
+    fn standard_input() -> Result<Self, ScenarioError> {
         let name = PathBuf::from("<stdin>");
-        let mut text = String::new();
-        let read = io::stdin().read_to_string(&mut text);
-        read.map_err(|source| ScenarioError::Unreadable { path: name.clone(), source })?;
-        Ok(Self { name, text })
+        match io::read_to_string(io::stdin()) {
+            Ok(text) => Ok(Self { name, text }),
+            Err(source) => Err(ScenarioError::Unreadable { path: name, source }),
+        }
     }
 
     /// The scenario with these settings.
