@@ -101,27 +101,22 @@ fn a_waypoint_that_is_about_as_good_is_kept() {
     assert_ne!(hidden.first_waypoint(goal), Some(behind), "it is behind the pillar");
 }
 
-/// The parent rests on the other side of the pillar, and the link is too short to go on on this one.
+/// The shorter way leads round the south of the pillar. Where its parent rests in the north, its link is too short for
+/// that, and long enough for the way round the north.
 #[test]
 fn a_robot_whose_link_leads_farther_on_the_other_side_goes_there() {
-    let mut robot = robot();
-    let hard = robot.hard_length();
-    robot.position = Point::new(6.9, 7.45);
-    robot.holds(fixed(20, 13));
-    let goal = Point::new(8.1, 7.45);
-    robot.hears(beacon(1, Point::new(7.5, 8.2), fixed(13, 14), &[13, 14]));
-    let first = robot.first_waypoint(goal).expect("a way leads there");
-    // Both ways are as long as the link and more: the southern one is the shorter by far of two equals.
-    let south_first = first.y < 7.45;
-    let length = |over: f64| 2.0 * (0.1_f64).hypot(over) + 1.0;
-    assert!(length(0.5) < hard + 1.0);
-    assert_eq!(
-        south_first,
-        robot
-            .next_corner(&robot.site.free_space.geodesic(robot.position, goal).expect("free"))
-            .is_some_and(|corner| corner.y < 7.45)
-            && first.y < 7.45
-    );
+    let goes_north = |parent: Point, parked: bool| {
+        let mut robot = robot();
+        robot.position = Point::new(6.9, 7.45);
+        robot.holds(fixed(20, 13));
+        robot.hears(Beacon { parked, ..beacon(1, parent, fixed(13, 14), &[13, 14]) });
+        robot.remember_parent();
+        let first = robot.first_waypoint(Point::new(8.1, 7.45));
+        first.expect("a way leads there").y > 7.5
+    };
+    let (north, south) = (Point::new(7.5, 8.2), Point::new(7.5, 6.8));
+    assert!(goes_north(north, true) && !goes_north(south, true));
+    assert!(!goes_north(north, false), "its parent does not rest there");
 }
 
 /// Half-way round the other side of an obstacle the link to the robot that it follows is as long as by either side.
