@@ -9,9 +9,9 @@
 //! `cargo run --release --example storm -- table SEEDS [KIND]` prints a table of what becomes of
 //! missions under each kind of storm, and of what breaks.
 //!
-//! `--settings` draws the settings of missions as well. `--strategy paper` and `--strategy eager` say when recruits
-//! are called for. Without it that is what the scenario
-//! says: in the studies the paper's order, elsewhere the default.
+//! `--settings` draws the settings of the missions of COUNT and SEED as well. `--strategy paper` and `--strategy eager`
+//! say when recruits are called for. Without it that is what the scenario says: in the studies the paper's order,
+//! elsewhere the default.
 
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;

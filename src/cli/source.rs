@@ -37,10 +37,12 @@ impl Source {
     pub fn all(paths: &[PathBuf]) -> Result<(Vec<Self>, Vec<ScenarioError>), Failure> {
         let (mut sources, mut unreadable) = (Vec::new(), Vec::new());
         for path in paths {
-            let found = match path {
-                path if is_standard(path) => vec![Self::standard_input()],
-                path if path.is_dir() => files_of(path)?.into_iter().map(Self::file).collect(),
-                path => vec![Self::file(path.clone())],
+            let found = if is_standard(path) {
+                vec![Self::standard_input()]
+            } else if path.is_dir() {
+                files_of(path)?.into_iter().map(Self::file).collect()
+            } else {
+                vec![Self::file(path.clone())]
             };
             for source in found {
                 match source {
@@ -53,15 +55,16 @@ impl Source {
     }
 
     fn file(name: PathBuf) -> Result<Self, ScenarioError> {
-        match std::fs::read_to_string(&name) {
-            Ok(text) => Ok(Self { name, text }),
-            Err(source) => Err(ScenarioError::Unreadable { path: name, source }),
-        }
+        let text = std::fs::read_to_string(&name);
+        Self::of(name, text)
     }
 
     fn standard_input() -> Result<Self, ScenarioError> {
-        let name = PathBuf::from("<stdin>");
-        match io::read_to_string(io::stdin()) {
+        Self::of(PathBuf::from("<stdin>"), io::read_to_string(io::stdin()))
+    }
+
+    fn of(name: PathBuf, text: io::Result<String>) -> Result<Self, ScenarioError> {
+        match text {
             Ok(text) => Ok(Self { name, text }),
             Err(source) => Err(ScenarioError::Unreadable { path: name, source }),
         }

@@ -12,7 +12,7 @@ use super::{Dice, Family, scenario as plan};
 
 /// Scenarios that are tried in storms beside random ones.
 pub const SHIPPED: [&str; 5] = ["study-1", "study-2", "office", "discs", "corridor"];
-/// Seconds for which a mission is taken to last when its faults are drawn.
+/// Control periods for which a mission is taken to last when its faults are drawn.
 pub const DURATION: f64 = 300.0;
 
 /// A shipped scenario.

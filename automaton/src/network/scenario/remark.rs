@@ -54,7 +54,7 @@ pub enum Remark {
     },
     /// Nothing is to be done.
     NoTask,
-    /// A move may miss its end by more than it is long: robots get on by chance.
+    /// A move may miss its target by its whole length, so that robots may make no progress.
     ShortMoves {
         /// σ, which no move is longer than.
         step_radius: f64,
@@ -172,9 +172,8 @@ impl fmt::Display for Remark {
             }
             Remark::ShortMoves { step_radius, motion_error } => write!(
                 formatter,
-                "{step_radius} is not more than motion_error, {motion_error}: a move may miss its end by more than it \
-                 is long, and robots may stand in each other's way for good; a step_radius of {} or more lets them \
-                 get on",
+                "{step_radius} does not exceed motion_error, {motion_error}: a move may miss its target by its whole \
+                 length, and robots may block each other permanently; use a step_radius of at least {}",
                 2.0 * motion_error
             ),
             Remark::ShortPeriods { rounds } => write!(

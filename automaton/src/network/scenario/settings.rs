@@ -154,10 +154,9 @@ impl Settings {
         self.arrival_radius() - self.errors.motion
     }
 
-    /// Whether a move may miss its end by as much as it is long at most.
+    /// m ≥ σ: whether even the longest move may miss its target by its whole length.
     pub fn moves_may_miss(&self) -> bool {
-        let motion = self.errors.motion;
-        motion > 0.0 && motion >= self.step_radius
+        self.errors.motion >= self.step_radius
     }
 
     /// 2e: by how much a link may be longer than its ends measure it.

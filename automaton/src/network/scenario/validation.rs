@@ -250,9 +250,10 @@ fn share_problem(value: f64) -> Option<Problem> {
 
 fn reserve_problem(value: f64, method: RoutingMethod) -> Option<Problem> {
     let least = method.least_reserve();
-    let is_too_small = (0.0..least).contains(&value);
-    let too_small = Problem::ReserveTooSmall { value, least };
-    if is_too_small { Some(too_small) } else { share_problem(value) }
+    match (0.0..least).contains(&value) {
+        true => Some(Problem::ReserveTooSmall { value, least }),
+        false => share_problem(value),
+    }
 }
 
 /// Tables without a row, and tables and polygons with too many.

@@ -130,8 +130,8 @@ pub(super) fn closings_are_told(ledger: &Ledger, scene: &Scene) -> Result<(), Di
         );
         return Err(Dispute::of(Property::Duties, &[], sentence));
     }
-    let before = scene.previous.iter().flat_map(|previous| &previous.closed);
-    match before.into_iter().find(|task| !closed.contains(task)) {
+    let before = scene.previous.map_or(&[][..], |previous| &previous.closed);
+    match before.iter().find(|task| !closed.contains(task)) {
         None => Ok(()),
         Some(task) => {
             let sentence = format!("task {task} is over, and is not shown so any more");

@@ -338,7 +338,7 @@ fn a_link_that_is_far_too_long_truly_gets_no_longer() {
 fn a_link_is_at_its_limit_in_spite_of_rounding() {
     let goes_on = |longer: f64| {
         let mut robot = unsure();
-        robot.holds(Post { parent: Some(Anchor::Post(PostId(13))), ..primary(30, None, 13) });
+        robot.holds(primary(30, None, 13));
         let length = robot.build_length() * (1.0 + longer);
         robot.hears(beacon(5, east(length), fixed(13, 14), &[13, 14]));
         robot.remember_parent();
