@@ -67,12 +67,12 @@ pub enum MissionError {
         /// How the executor names it.
         reason: String,
     },
-    /// Faults of nodes where each access point has a team of its own.
+    /// Nodes whose clocks are behind where each access point has a team of its own.
     #[error(
-        "where control.teams is \"per_access_point\", messages may fail, and no nodes: run the mission \
-         without faults of nodes and partitions, or with one team"
+        "where control.teams is \"per_access_point\", the clocks of all nodes tick together: run the mission \
+         without shifted clocks, or with one team"
     )]
-    FaultsOfFleets,
+    ShiftedClocksOfFleets,
     /// A watcher cannot write what it has to.
     #[error("cannot write: {0}")]
     Watcher(#[from] io::Error),
@@ -206,20 +206,23 @@ fn carry_out<S: Runnable>(
 }
 
 /// Runs the mission of `scenario` in a storm. It is held against what no fault may break. Where each access point
-/// has a team of its own, messages fail within each fleet; where the robots of other fleets are, is always known.
+/// has a team of its own, messages and nodes fail within each fleet; where the robots of other fleets are, is always
+/// known.
 ///
 /// # Errors
-/// When a watcher fails, and when nodes are to fail where there are several teams.
+/// When a watcher fails, and when clocks are shifted where there are several teams.
 pub fn run_in_storm(
     scenario: &ValidScenario,
     storm: &Storm,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     if !scenario.fleets().is_empty() {
-        if !storm.nodes.is_empty() || !storm.messages.partitions.is_empty() {
-            return Err(MissionError::FaultsOfFleets);
+        if storm.shifts_clocks() {
+            return Err(MissionError::ShiftedClocksOfFleets);
         }
-        let mut fleets = Fleets::of_networks(scenario, |fleet| storm::network(fleet, storm))?;
+        let mut fleets = Fleets::of_networks(scenario, |fleet| {
+            storm::network(fleet.scenario(), &storm.of_fleet(fleet))
+        })?;
         return carry_out(scenario, storm.faults(), &mut fleets, watchers);
     }
     let mut network = storm::network(scenario, storm)?;

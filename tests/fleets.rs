@@ -3,10 +3,10 @@
 
 use crate::floor_plans::{Family, scenario};
 use crate::missions::{Period, run, shipped, shipped_mission, traced, valid};
-use pleach::automaton::network::NodeFaults;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Teams, ValidScenario};
-use pleach::automaton::node::MessageFaults;
+use pleach::automaton::network::{Crash, NodeFaults};
+use pleach::automaton::node::{MessageFaults, Partition};
 use pleach::judge::{Verdict, judge};
 use pleach::mission::{self, MissionError, Watcher};
 use pleach::trace::{TraceReader, TraceWriter};
@@ -53,6 +53,10 @@ fn with_tasks_passed_on(scenario: &ValidScenario) -> Scenario {
 fn trace(scenario: &ValidScenario) -> (Vec<u8>, Outcome) {
     let (bytes, completed) = traced(scenario);
     (bytes, completed.end.outcome)
+}
+
+fn outcomes(end: &End) -> Vec<Outcome> {
+    end.fleets.iter().map(|it| it.end.outcome).collect()
 }
 
 fn verdict(bytes: &[u8]) -> Verdict {
@@ -157,8 +161,6 @@ fn an_interruption_and_a_limit_end_the_missions_that_go_on() {
     let scenario = valid(shipped("two-teams"));
     let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
     let completed = mission::run(&scenario, &mut [&mut writer, &mut After(230)]).unwrap();
-    let outcomes =
-        |end: &End| -> Vec<Outcome> { end.fleets.iter().map(|it| it.end.outcome).collect() };
     assert_eq!(completed.end.outcome, Outcome::Interrupted);
     assert_eq!(completed.end.reason, "enough is seen");
     assert_eq!(outcomes(&completed.end), [Outcome::Serviced, Outcome::Interrupted]);
@@ -202,18 +204,69 @@ fn random_missions_of_fleets_keep_their_promises_and_give_the_same_bytes() {
 // ---- Faults ------------------------------------------------------------------------------------
 
 #[test]
-fn fleets_may_lose_messages_and_lose_no_robots() {
-    let scenario = valid(shipped("two-teams"));
+fn fleets_may_lose_messages() {
     let messages = MessageFaults { loss: 0.2, ..MessageFaults::default() };
-    let lossy = Storm { seed: 3, messages, nodes: Vec::new() };
-    let mut writer = TraceWriter::with_faults(Vec::new(), &scenario, lossy.faults()).unwrap();
-    let completed = mission::run_in_storm(&scenario, &lossy, &mut [&mut writer]).unwrap();
-    assert_eq!(completed.end.outcome, Outcome::Serviced, "{}", completed.end.reason);
-    let bytes = writer.finish().unwrap();
-    assert!(matches!(verdict(&bytes), Verdict::Sound { .. }));
-    let with_faulty_node = Storm { nodes: vec![(0, NodeFaults::default())], ..lossy };
-    let refused = mission::run_in_storm(&scenario, &with_faulty_node, &mut []);
-    assert!(matches!(refused, Err(MissionError::FaultsOfFleets)));
+    let (end, _) = in_storm(&Storm { seed: 3, messages, nodes: Vec::new() });
+    assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
+}
+
+/// Each fleet goes on with the robots that it has left: robot 1 restarts, and without robot 8, which is number 2 of
+/// its fleet, there are too few of them.
+#[test]
+fn fleets_may_lose_robots() {
+    let crash = |time, back| NodeFaults {
+        crash: Some(Crash { time, inputs: 0, back }),
+        ..NodeFaults::default()
+    };
+    let nodes = vec![(1, crash(30.0, Some(60.0))), (8, crash(40.0, None))];
+    let (end, snapshots) = in_storm(&Storm { nodes, ..Storm::default() });
+    assert_eq!(outcomes(&end), [Outcome::Serviced, Outcome::InsufficientRobots]);
+    let absent = |period: usize| &snapshots[period].absent[..];
+    assert_eq!([absent(29), absent(35), absent(50), absent(70)], [&[][..], &[1], &[1, 8], &[8]]);
+    let place = |period: usize| snapshots[period].positions[8];
+    assert!(snapshots[40..].iter().all(|snapshot| snapshot.positions[8] == place(40)));
+}
+
+/// Fleets hear nothing of each other anyway. The access points are nodes 12 and 13.
+#[test]
+fn a_partition_between_fleets_changes_nothing() {
+    let divided = |side: &[usize]| {
+        let partition = Partition { begin: 20.0, end: 25.0, side: side.to_vec() };
+        let messages = MessageFaults { partitions: vec![partition], ..MessageFaults::default() };
+        in_storm(&Storm { messages, ..Storm::default() }).1
+    };
+    let (_, whole) = in_storm(&Storm::default());
+    assert!(divided(&[0, 1, 2, 3, 4, 5, 12]) == whole);
+    assert!(divided(&[9, 10]) != whole);
+}
+
+#[test]
+fn clocks_of_fleets_tick_together() {
+    let shifted = NodeFaults { shift: 0.3, ..NodeFaults::default() };
+    let storm = Storm { nodes: vec![(0, shifted)], ..Storm::default() };
+    let refused = mission::run_in_storm(&valid(shipped("two-teams")), &storm, &mut []);
+    assert!(matches!(refused, Err(MissionError::ShiftedClocksOfFleets)));
+}
+
+/// Runs two teams in a storm, judges the trace, and gives the end and what was seen.
+fn in_storm(storm: &Storm) -> (End, Vec<Snapshot>) {
+    let scenario = valid(shipped("two-teams"));
+    let mut writer = TraceWriter::with_faults(Vec::new(), &scenario, storm.faults()).unwrap();
+    let mut snapshots = Snapshots(Vec::new());
+    let watchers: &mut [&mut dyn Watcher] = &mut [&mut writer, &mut snapshots];
+    let completed = mission::run_in_storm(&scenario, storm, watchers).unwrap();
+    let verdict = verdict(&writer.finish().unwrap());
+    assert!(matches!(verdict, Verdict::Sound { .. }), "{verdict:?}");
+    (completed.end, snapshots.0)
+}
+
+struct Snapshots(Vec<Snapshot>);
+
+impl Watcher for Snapshots {
+    fn observe(&mut self, snapshot: &Snapshot, _: &[MissionEvent]) -> io::Result<()> {
+        self.0.push(snapshot.clone());
+        Ok(())
+    }
 }
 
 // ---- Spoiled traces ----------------------------------------------------------------------------

@@ -34,11 +34,6 @@ impl FaultArguments {
             return Ok(None);
         }
         check_robots("--stop", &self.stop, scenario)?;
-        if !self.stop.is_empty() && !scenario.fleets().is_empty() {
-            let what = "--stop is not simulated where control.teams is \"per_access_point\": leave it out, or run the \
-                mission with one team";
-            return Err(Failure::Usage(what.to_owned()));
-        }
         let period = scenario.settings().period;
         Ok(Some(Storm {
             seed: self.loss_seed,

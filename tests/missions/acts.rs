@@ -1,7 +1,7 @@
 //! What acts in missions: which rows of their tables the nodes take, and what they say to each other.
 
 use super::medium::Noted;
-use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::scenario::{Fleet, ValidScenario};
 use pleach::automaton::network::{Fleets, NamedRow, Network, Site};
 use pleach::mission::{self, Completed, Watcher};
 use std::collections::BTreeMap;
@@ -34,11 +34,11 @@ impl Acts {
         scenario: &ValidScenario,
         watchers: &mut [&mut dyn Watcher],
     ) -> (Completed, Self) {
-        let network = |fleet: &ValidScenario| {
-            let mut site = Site::clone(fleet.site());
+        let network = |fleet: &Fleet| {
+            let mut site = Site::clone(fleet.scenario().site());
             site.automata = site.automata.counted();
             let medium = Noted::new(&site);
-            Network::with_medium(fleet, Arc::new(site), medium)
+            Network::with_medium(fleet.scenario(), Arc::new(site), medium)
         };
         let mut fleets = Fleets::of_networks(scenario, network).unwrap();
         let completed =

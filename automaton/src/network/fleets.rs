@@ -76,21 +76,21 @@ impl Fleets<Radio> {
     /// # Errors
     /// When an automaton is not well formed.
     pub fn new(scenario: &ValidScenario) -> Result<Self, NetworkError> {
-        Fleets::of_networks(scenario, Network::new)
+        Fleets::of_networks(scenario, |fleet| Network::new(fleet.scenario()))
     }
 }
 
 impl<M, N: RobotNode> Fleets<M, N> {
-    /// The fleets of a scenario, where `network` makes the network of each from its own scenario.
+    /// The fleets of a scenario, where `network` makes the network of each.
     ///
     /// # Errors
     /// When a network cannot be made.
     pub fn of_networks<E>(
         scenario: &ValidScenario,
-        mut network: impl FnMut(&ValidScenario) -> Result<Network<M, N>, E>,
+        mut network: impl FnMut(&Fleet) -> Result<Network<M, N>, E>,
     ) -> Result<Self, E> {
         let member = |fleet: &Fleet| {
-            let network = network(fleet.scenario())?;
+            let network = network(fleet)?;
             Ok(FleetNetwork { fleet: fleet.clone(), network, end: None })
         };
         let fleets = scenario.fleets().iter().map(member).collect::<Result<_, E>>()?;

@@ -13,12 +13,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::ValidScenario;
+use pleach_automaton::network::scenario::{Fleet, ValidScenario};
 use pleach_automaton::network::{
     AccessPoint, FaultyNode, Member, Message, Network, NetworkError, NodeFaults, Radio, Robot,
     Site, User,
 };
-use pleach_automaton::node::{Medium, MessageFaults, Unreliable};
+use pleach_automaton::node::{Medium, MessageFaults, Partition, Unreliable};
 use pleach_automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use pleach_continuous::Point;
 
@@ -44,13 +44,36 @@ impl Storm {
     pub fn faults(&self) -> Faults {
         let MessageFaults { loss, silence, lateness, copies, partitions, .. } = &self.messages;
         let nodes = || self.nodes.iter().map(|(_, faults)| faults);
-        let is_shifted = |faults: &NodeFaults| faults.shift > 0.0;
         let stops = |faults: &NodeFaults| faults.crash.is_some() || faults.joins.is_some();
         Faults {
             messages: [loss, silence, lateness, copies].into_iter().any(|chance| *chance > 0.0)
                 || !partitions.is_empty()
-                || nodes().any(is_shifted),
+                || self.shifts_clocks(),
             nodes: !partitions.is_empty() || nodes().any(stops),
+        }
+    }
+
+    /// Whether clocks are behind others.
+    pub fn shifts_clocks(&self) -> bool {
+        self.nodes.iter().any(|(_, faults)| faults.shift > 0.0)
+    }
+
+    /// What of it fails in this fleet, in the fleet's own numbers.
+    #[must_use]
+    pub fn of_fleet(&self, fleet: &Fleet) -> Self {
+        let own = |&node: &usize| fleet.inward().node(node);
+        let part = |partition: &Partition| Partition {
+            side: partition.side.iter().filter_map(own).collect(),
+            ..*partition
+        };
+        let nodes = self.nodes.iter();
+        Storm {
+            seed: self.seed,
+            messages: MessageFaults {
+                partitions: self.messages.partitions.iter().map(part).collect(),
+                ..self.messages.clone()
+            },
+            nodes: nodes.filter_map(|(node, faults)| Some((own(node)?, faults.clone()))).collect(),
         }
     }
 }
