@@ -92,7 +92,7 @@ pub struct Completed {
 /// Runs the mission of `scenario` to its end.
 ///
 /// # Errors
-/// When a watcher fails.
+/// When a watcher fails, a node cannot go on, or the settings leave no time for the mission.
 pub fn run(
     scenario: &ValidScenario,
     watchers: &mut [&mut dyn Watcher],
@@ -106,7 +106,7 @@ pub fn run(
 /// Runs `fleets`, which are those of `scenario` over any media, until the missions of all have ended.
 ///
 /// # Errors
-/// When a watcher fails.
+/// When a watcher fails, a node cannot go on, or the settings leave no time for the mission.
 pub fn run_fleets<M: Medium<Message, Point>, N: RobotNode>(
     scenario: &ValidScenario,
     fleets: &mut Fleets<M, N>,
@@ -118,7 +118,7 @@ pub fn run_fleets<M: Medium<Message, Point>, N: RobotNode>(
 /// Runs `network`, which is the network of `scenario` over any medium, to its end.
 ///
 /// # Errors
-/// When a watcher fails.
+/// When a watcher fails, a node cannot go on, or the settings leave no time for the mission.
 pub fn run_network<M: Medium<Message, Point>, N: RobotNode>(
     scenario: &ValidScenario,
     network: &mut Network<M, N>,
@@ -130,7 +130,7 @@ pub fn run_network<M: Medium<Message, Point>, N: RobotNode>(
 /// The same for a network in which these faults occur. It is held against what no fault may break.
 ///
 /// # Errors
-/// When a watcher fails.
+/// When a watcher fails, a node cannot go on, or the settings leave no time for the mission.
 pub fn run_network_with_faults<M: Medium<Message, Point>, N: RobotNode>(
     scenario: &ValidScenario,
     faults: Faults,
@@ -210,7 +210,7 @@ fn carry_out<S: Runnable>(
 /// known.
 ///
 /// # Errors
-/// When a watcher fails, and when clocks are shifted where there are several teams.
+/// As for [`run`], and when clocks are shifted where there are several teams.
 pub fn run_in_storm(
     scenario: &ValidScenario,
     storm: &Storm,

@@ -10,10 +10,9 @@ use super::sweep::Sweep;
 use super::terminal;
 use pleach::automaton::network::phrase;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
-use pleach::automaton::network::scenario::{Fleet, Remark, ValidScenario};
+use pleach::automaton::network::scenario::{Fleet, LinkCount, Remark, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -53,13 +52,13 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
     let Planned { source, scenario, settings, .. } = planned;
     let resolved = scenario.settings();
     let set: String = settings.iter().map(|setting| format!(" with {setting}")).collect();
-    let (links, crossing) = scenario.count_links();
+    let LinkCount { links, through_walls } = scenario.count_links();
     let mut rows = vec![
         ("workspace", workspace(scenario)),
         ("access points", scenario.access_point.len().to_string()),
         ("robots", scenario.robot.len().to_string()),
         ("tasks", scenario.task.len().to_string()),
-        ("links", format!("{links} at the start, {crossing} of them through walls")),
+        ("links", format!("{links} at the start, {through_walls} of them through walls")),
         ("longest new link", longest_link(scenario)),
         (
             "clearance",
@@ -158,7 +157,7 @@ fn draw(
     let title = format!("{}: the start", scenario.name);
     let picture = plan.render(&Scene { snapshot: &snapshot, title: &title, trails: &[] });
     let path = folder.join("start.svg");
-    fs::write(&path, picture).map_err(|source| Failure::Creation { path: path.clone(), source })?;
+    output::write(&path, &picture)?;
     Ok(Some(path))
 }
 

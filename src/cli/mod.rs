@@ -33,7 +33,7 @@ pub use arguments::{Arguments, Command};
 use status::{Failure, Status};
 use std::process::ExitCode;
 
-/// Carries out a command. What went wrong stands on the error output.
+/// Carries out a command. Errors are printed to the error output.
 pub fn carry_out(command: Command) -> ExitCode {
     let result = match command {
         Command::Run(run) => run::run(&run),
@@ -53,7 +53,7 @@ pub fn carry_out(command: Command) -> ExitCode {
     exit(result)
 }
 
-/// The exit status of a command; what went wrong is told.
+/// The exit status of a command whose errors are printed here.
 pub fn exit(result: Result<Status, Failure>) -> ExitCode {
     let status = result.unwrap_or_else(|failure| {
         output::tell(format_args!("error: {failure}"));

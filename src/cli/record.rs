@@ -26,7 +26,7 @@ pub struct Record {
     /// How the mission ended, as traces name it; `failed` if the program could not run it.
     pub outcome: String,
     /// The exit status of this run alone.
-    pub status: u8,
+    pub status: Status,
     /// The number of tasks.
     pub tasks: usize,
     /// The number of tasks serviced.
@@ -80,7 +80,7 @@ impl Record {
         let value = |extreme: &Option<Extreme>| extreme.as_ref().map(|extreme| extreme.value);
         Self {
             outcome: end.outcome.name().into(),
-            status: status as u8,
+            status,
             serviced: summary.serviced(),
             periods: summary.periods(),
             seconds: summary.seconds(),
@@ -106,7 +106,7 @@ impl Record {
             set: run.settings.iter().map(set).collect(),
             seed: run.seed,
             outcome: "failed".into(),
-            status: Status::Failed as u8,
+            status: Status::Failed,
             tasks: run.scenario.task.len(),
             serviced: 0,
             periods: 0,
@@ -127,7 +127,7 @@ impl Record {
         [
             self.seed.map_or_else(String::new, |seed| seed.to_string()),
             self.outcome.clone(),
-            self.status.to_string(),
+            (self.status as u8).to_string(),
             self.tasks.to_string(),
             self.serviced.to_string(),
             self.periods.to_string(),

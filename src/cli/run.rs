@@ -58,7 +58,7 @@ fn run_one(
         ));
     }
     say(arguments, &told(&finished, arguments.trace.as_deref()))?;
-    Ok(status_of(&finished.record))
+    Ok(finished.record.status)
 }
 
 /// What a person reads of a mission that has ended: its summary, and where the files are.
@@ -111,18 +111,13 @@ fn run_many(
         said += &format!("{} of {} runs did not begin\n", runs.len() - records.len(), runs.len());
     }
     say(arguments, &said)?;
-    let worst = records.iter().map(status_of).max_by_key(|status| status.severity());
+    let worst = records.iter().map(|record| record.status).max_by_key(|status| status.severity());
     let incomplete = (records.len() < runs.len()).then_some(Status::Unserviced);
     Ok([worst, incomplete]
         .into_iter()
         .flatten()
         .max_by_key(|status| status.severity())
         .unwrap_or(Status::Done))
-}
-
-/// The exit status of a run.
-pub fn status_of(record: &Record) -> Status {
-    Status::of_number(record.status)
 }
 
 /// What is told before the mission: tasks that no robot can service, with which it will end, what is taken

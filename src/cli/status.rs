@@ -6,6 +6,7 @@ use pleach::mission::MissionError;
 use pleach::page::PageError;
 use pleach::scenario_file::ScenarioError;
 use pleach::starts::NoStarts;
+use serde::{Serialize, Serializer};
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -38,12 +39,6 @@ impl From<Outcome> for Status {
 }
 
 impl Status {
-    /// The status with this number.
-    pub fn of_number(number: u8) -> Self {
-        let all = [Status::Done, Status::BadInput, Status::Unserviced, Status::InvariantViolated];
-        all.into_iter().find(|&status| status as u8 == number).unwrap_or(Status::Failed)
-    }
-
     /// How bad it is: of several runs the worst one decides.
     pub fn severity(self) -> u8 {
         match self {
@@ -53,6 +48,13 @@ impl Status {
             Status::InvariantViolated => 3,
             Status::Failed => 4,
         }
+    }
+}
+
+/// As its number.
+impl Serialize for Status {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u8(*self as u8)
     }
 }
 
@@ -207,7 +209,8 @@ mod tests {
 
     #[test]
     fn the_worst_status_is_that_of_the_help() {
-        let mut all = [0, 1, 2, 3, 4].map(Status::of_number);
+        use Status::{BadInput, Done, Failed, InvariantViolated, Unserviced};
+        let mut all = [Done, Failed, BadInput, Unserviced, InvariantViolated];
         assert_eq!(all.map(|status| status as u8), [0, 1, 2, 3, 4]);
         all.sort_by_key(|status| std::cmp::Reverse(status.severity()));
         // Nothing is run where an input is wrong, so that 2 meets no other.

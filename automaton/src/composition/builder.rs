@@ -134,8 +134,9 @@ impl CompositionBuilder {
 
     /// What happens where jumps of the component added last accumulate.
     pub fn at_accumulation(mut self, accumulation: Accumulation) -> Self {
-        if let Some(part) = self.parts.last_mut() {
-            part.accumulation = Some(accumulation);
+        match self.parts.last_mut() {
+            Some(part) => part.accumulation = Some(accumulation),
+            None => self.fault(CompositionError::NoComponent),
         }
         self
     }

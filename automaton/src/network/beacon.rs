@@ -100,6 +100,9 @@ impl Announcement {
 /// An announcement with the identity of the notice that made it.
 pub type Announced = (NoticeId, Shared<Announcement>);
 
+/// A call for a recruit with a way over the tree to the caller.
+pub type CallRoute = (NoticeId, Shared<Vec<Hop>>);
+
 /// A notice on the mission with its identity.
 pub type Bulletin = bulletin::Bulletin<Shared<Notice>>;
 
@@ -146,7 +149,7 @@ pub struct Beacon {
     /// Its view of the agreement about the current path.
     pub agreement: Option<Agreement>,
     /// Its way over the tree to the robot that calls for a recruit, and the call.
-    pub route: Option<(NoticeId, Shared<Vec<Hop>>)>,
+    pub route: Option<CallRoute>,
     /// The access points that the way crosses first, when the sender is an access point.
     pub crossing: Vec<usize>,
     /// Its way to an access point.

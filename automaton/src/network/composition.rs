@@ -97,7 +97,7 @@ impl Network<Radio> {
     /// The network of a scenario at its start, with the synchronous medium.
     ///
     /// # Errors
-    /// When an automaton is not well formed.
+    /// When the user cannot take up its tasks.
     pub fn new(scenario: &ValidScenario) -> Result<Self, NetworkError> {
         let site = Arc::clone(scenario.site());
         let medium = Radio::new(&site);
@@ -174,7 +174,7 @@ impl<M: Medium<Message, Point>, N: RobotNode> Network<M, N> {
     /// user.
     ///
     /// # Errors
-    /// When the user cannot say what there is to do.
+    /// When the user cannot take up its tasks.
     pub fn of_nodes(
         scenario: &Scenario,
         site: Arc<Site>,

@@ -8,12 +8,12 @@ use std::sync::Arc;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::Stage;
 
-use super::member::{Member, Sense};
+use super::member::{Member, NodeOutputs, Sense};
 use super::message::Message;
 use super::record::MissionEvent;
 use super::robot::RobotError;
 use crate::chance::Chance;
-use crate::node::{Input, Node, Observed, Outputs};
+use crate::node::{Input, Node, Observed};
 
 /// The faults of one node. Times are in seconds from the beginning.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -208,7 +208,7 @@ impl Node for FaultyNode {
     fn step(
         &mut self,
         input: Input<'_, Message, Sense>,
-        outputs: &mut Outputs<Message, MissionEvent>,
+        outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
         self.wait(matches!(input, Input::Tick { .. }));
         self.crash_if_due();

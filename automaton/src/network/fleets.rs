@@ -6,9 +6,8 @@
 //! The networks jump at the same instants and flow together; one whose mission has ended goes on standing, and carries
 //! what its robots generate, until all have ended.
 
-use std::collections::BTreeMap;
-
 use pleach_continuous::Point;
+use pleach_continuous::geometry::Neighbours;
 use pleach_continuous::network::LinkReliability;
 
 use super::composition::{KernelTimes, Network, NetworkError, RobotNode};
@@ -17,7 +16,6 @@ use super::member::{Member, Sense};
 use super::merging::Part;
 use super::message::Message;
 use super::record::{End, FleetEnd, MissionEvent, Snapshot};
-use super::scenario::buckets::Buckets;
 use super::scenario::{Fleet, ValidScenario};
 use crate::executor::{Round, System};
 use crate::node::{Medium, NodeJump};
@@ -74,7 +72,7 @@ impl Fleets<Radio> {
     /// The networks of the fleets of a scenario at their start, each with the synchronous medium.
     ///
     /// # Errors
-    /// When an automaton is not well formed.
+    /// When a user cannot take up its tasks.
     pub fn new(scenario: &ValidScenario) -> Result<Self, NetworkError> {
         Fleets::of_networks(scenario, |fleet| Network::new(fleet.scenario()))
     }
@@ -133,12 +131,13 @@ impl<M: Medium<Message, Point>, N: RobotNode> Fleets<M, N> {
         let all: Vec<(usize, Point)> =
             fleets.flat_map(|(fleet, its)| its.iter().map(move |&body| (fleet, body))).collect();
         let places: Vec<Point> = all.iter().map(|&(_, place)| place).collect();
-        let buckets = Buckets::of(&places, self.range);
+        let neighbours = Neighbours::new(&places, self.range);
         for (fleet, member) in self.fleets.iter_mut().enumerate() {
             for (robot, &place) in bodies[fleet].iter().enumerate() {
-                let others = buckets.near(place).filter(|&(number, _)| all[number].0 != fleet);
-                let near: BTreeMap<usize, Point> = others.collect();
-                member.network.sense(robot, Sense::Bodies(near.into_values().collect()))?;
+                let near = neighbours.within(place, self.range).into_iter();
+                let others = near.filter(|&number| all[number].0 != fleet);
+                let seen = others.map(|number| places[number]).collect();
+                member.network.sense(robot, Sense::Bodies(seen))?;
             }
         }
         Ok(())

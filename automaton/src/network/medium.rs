@@ -1,6 +1,7 @@
 //! The radio: which nodes hear each other.
 
 use pleach_continuous::Point;
+use pleach_continuous::geometry::Neighbours;
 use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::NodeId;
 
@@ -53,19 +54,19 @@ impl Radio {
         self.audiences.of(sender)
     }
 
-    /// Finds out anew who hears whom.
+    /// Recomputes which nodes are in range of each other.
     fn survey(&mut self) {
         let Radio { range, robots, access_points, ref bodies, .. } = *self;
         let user = robots + access_points;
         let with_radio = &bodies[..user.min(bodies.len())];
-        let cells = Cells::new(with_radio, range);
+        let neighbours = Neighbours::new(with_radio, range);
         let mut audiences = Audiences::default();
         for (node, &place) in bodies.iter().enumerate() {
             let first = audiences.nodes.len();
             if node < user {
-                cells.around(place, |other| {
-                    let near = (place - bodies[other]).norm() < range;
-                    if other != node && near && !(node >= robots && other >= robots) {
+                neighbours.for_each_within(place, range, |other, distance| {
+                    let is_wired = node >= robots && other >= robots;
+                    if other != node && distance < range && !is_wired {
                         audiences.nodes.push(other);
                     }
                 });
@@ -170,34 +171,6 @@ impl Audiences {
                 Ok(at) => &audience[at..=at],
                 Err(_) => &[],
             },
-        }
-    }
-}
-
-/// Nodes sorted into square cells as wide as the radio's range.
-struct Cells {
-    width: f64,
-    sorted: Vec<((i64, i64), NodeId)>,
-}
-
-impl Cells {
-    fn new(positions: &[Point], width: f64) -> Self {
-        let mut sorted: Vec<_> =
-            positions.iter().enumerate().map(|(node, &p)| (Self::cell(p, width), node)).collect();
-        sorted.sort_unstable();
-        Cells { width, sorted }
-    }
-
-    fn cell(place: Point, width: f64) -> (i64, i64) {
-        ((place.x / width).floor() as i64, (place.y / width).floor() as i64)
-    }
-
-    fn around(&self, place: Point, mut visit: impl FnMut(NodeId)) {
-        let (column, row) = Self::cell(place, self.width);
-        for x in column - 1..=column + 1 {
-            let from = self.sorted.partition_point(|&(cell, _)| cell < (x, row - 1));
-            let to = self.sorted.partition_point(|&(cell, _)| cell <= (x, row + 1));
-            self.sorted[from..to].iter().for_each(|&(_, node)| visit(node));
         }
     }
 }

@@ -37,6 +37,9 @@ pub enum Sense {
     Tasks(Arc<[Task]>),
 }
 
+/// What a node of the network sends and reports in its steps.
+pub type NodeOutputs = Outputs<Message, MissionEvent>;
+
 /// A node as observers see it.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
@@ -78,7 +81,7 @@ impl Node for Member {
     fn step(
         &mut self,
         input: Input<'_, Message, Sense>,
-        outputs: &mut Outputs<Message, MissionEvent>,
+        outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
         match self {
             Member::Robot(robot) => robot.step(input, outputs),

@@ -1,4 +1,4 @@
-//! The roll: which robots take part, as the first access point calls it once a control period.
+//! The roll: the list of the robots that take part, which the first access point issues once a control period.
 //!
 //! Every beacon carries the newest roll that its sender knows. A robot moves only by a roll that is
 //! valid and does not name it, so that robots which others take to be gone do not move.

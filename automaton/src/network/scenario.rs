@@ -5,7 +5,6 @@
 //! robots know; making one says everything that is wrong. What does not keep a mission from
 //! starting but may surprise, its [`Remark`]s tell.
 
-pub(super) mod buckets;
 mod control;
 mod fault;
 mod fleet;
@@ -25,7 +24,7 @@ pub use fault::{Fault, InvalidScenario, Problem};
 pub use fleet::Fleet;
 pub use key_path::{KeyPath, KeyStep};
 pub use radio::{LinkModel, LinkRanges, STEEPEST, STEEPNESS};
-pub use remark::{Late, Remark, TaskRemark};
+pub use remark::{Late, LinkCount, Remark, TaskRemark};
 pub use settings::{LinkLengths, Settings};
 pub use valid::ValidScenario;
 

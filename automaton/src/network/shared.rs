@@ -7,8 +7,8 @@ use pleach_discrete::network::{Election, IdSet};
 
 /// A value shared between nodes: a node with a newer value shares another one.
 ///
-/// Two of them are equal if their values are. To find this out costs nothing where they are one and
-/// the same, as they are when a value was passed on within one process.
+/// Two of them are equal if their values are. Pointers are compared first, so comparing values that were passed on
+/// within one process is cheap.
 #[derive(Debug)]
 pub struct Shared<T>(Arc<T>);
 
@@ -41,7 +41,7 @@ impl<T> Deref for Shared<T> {
     }
 }
 
-/// What is the same is not told anew.
+/// Replaces a set by one that differs. Equal sets keep sharing one allocation, so that receivers see no change.
 pub(super) fn renew(known: &mut Arc<IdSet>, now: IdSet) {
     if **known != now {
         *known = Arc::new(now);

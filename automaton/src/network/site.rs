@@ -110,7 +110,7 @@ impl Site {
     /// Prepares what the robots of `scenario` know.
     ///
     /// # Errors
-    /// When polygons, clearance or ranges are not valid.
+    /// When polygons, clearance or ranges are not valid, and when an automaton is not well formed.
     pub fn new(scenario: &Scenario) -> Result<Self, SiteError> {
         let settings = Settings::resolve(scenario);
         let (workspace, repairs) = scenario.workspace()?;

@@ -13,7 +13,7 @@ use pleach_guards::network::{control, service as guards};
 
 use super::act::{Act, acting};
 use super::beacon::{Bulletin, Notice};
-use super::member::Sense;
+use super::member::{NodeOutputs, Sense};
 use super::message::Message;
 use super::order::Order;
 use super::record::{End, MissionEvent, Outcome};
@@ -23,7 +23,7 @@ use super::service::{Asked, Asking, Deserted, Informed, Preparing, Waiting};
 use super::shared::Shared;
 use super::site::Site;
 use crate::located::{Current, DataOf, Holds, Place as _};
-use crate::node::{Input, Node, Outputs};
+use crate::node::{Input, Node};
 use crate::{Automaton, BuildError, Flow, Transfer};
 
 /// A user sends its tasks to the first access point and receives notices from it.
@@ -212,7 +212,7 @@ impl User {
     }
 
     /// Takes a row, if one is enabled.
-    fn jump(&mut self, outputs: &mut Outputs<Message, MissionEvent>) -> Result<(), RobotError> {
+    fn jump(&mut self, outputs: &mut NodeOutputs) -> Result<(), RobotError> {
         let site = Arc::clone(&self.site);
         site.automata.request.step_in_place::<Asked>(self)?;
         for act in std::mem::take(&mut self.acts) {
@@ -240,7 +240,7 @@ impl Node for User {
     fn step(
         &mut self,
         input: Input<'_, Message, Sense>,
-        outputs: &mut Outputs<Message, MissionEvent>,
+        outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
         match input {
             Input::Sensed(Sense::Tasks(tasks)) => self.tasks = tasks,
@@ -302,7 +302,7 @@ mod tests {
         /// The control periods of a user who hears this news at the beginning of some of them, until it
         /// knows how the mission has ended.
         fn waits_for_end(&mut self, news: &Bulletin, hears: impl Fn(u32) -> bool) -> u32 {
-            let (node, mut outputs) = (self.site.robots, Outputs::of(self.site.nodes()));
+            let (node, mut outputs) = (self.site.robots, NodeOutputs::of(self.site.nodes()));
             for period in 0..1_000 {
                 if hears(period) {
                     let message = Message::News(news.clone());

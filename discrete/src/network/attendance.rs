@@ -2,7 +2,7 @@
 //!
 //! A robot moves only by a roll that is valid and does not name it. A robot that others take to be
 //! gone is one that may not move any more: between the last roll that lets it move and the first
-//! that calls it gone there is one that suspends it, for as long as a roll is valid.
+//! that calls it gone there is one that suspends it, for as long as a roll is valid: a failure detector with leases.
 
 use crate::{Row, TransitionTable, Urgency, vocabulary};
 

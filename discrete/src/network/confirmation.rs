@@ -4,7 +4,8 @@
 //! period whose confirmation has come down the tree to its sender. A post is attached only to one
 //! with a newer confirmation than any that the post itself has passed on. Whatever is attached to
 //! the post, directly or not, has its confirmations from there, and none that is newer: so no cycle
-//! closes, whichever messages are lost, late or copied (the lemma `confirmation.smt2`).
+//! closes, whichever messages are lost, late or copied (the lemma `confirmation.smt2`). Periods are sequence numbers
+//! for loop freedom, as in the routing protocols DSDV and AODV.
 
 /// What a robot keeps of the confirmations of the way from its post.
 ///

@@ -41,5 +41,5 @@ pub use role::{Phase, Role};
 pub use service::{REQUESTS, Request, RequestEvent, SERVICE, Service, ServiceEvent};
 pub use tables::{MISSION, MissionStep};
 
-/// A node of the network: robots are numbered first, from 0, then access points.
+/// A node of the network: robots are numbered first, from 0, then access points, last the user.
 pub type NodeId = usize;

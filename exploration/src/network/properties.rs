@@ -120,7 +120,7 @@ fn going_by(
     state: &State,
     robot: RobotView<'_>,
 ) -> Option<(u32, Option<usize>)> {
-    protocol.has_failures(state).then(|| robot.announcement())
+    protocol.has_failures(state).then(|| (robot.epoch(), robot.current_task()))
 }
 
 /// At most one robot is the leader; once a robot has failed, at most one of those that go by the same

@@ -52,6 +52,9 @@ pub enum CompositionError {
         /// The name before.
         event: String,
     },
+    /// What happens at an accumulation is stated before any component is added.
+    #[error("no component has been added yet: call `at_accumulation` after `add`")]
+    NoComponent,
     /// A connection begins or ends at a variable that does not exist.
     #[error("no component has the variable `{variable}`: write `component.coordinate`")]
     UnknownVariable {

@@ -2,7 +2,8 @@
 //!
 //! Robots that are attached to an access point, at whatever distance, are heard of. One that has not
 //! been for some control periods is suspended, and gone when no roll is valid any more that lets it
-//! move. A robot that comes back is readmitted when no roll is valid any more that calls it gone.
+//! move. A robot that comes back is readmitted when no roll is valid any more that calls it gone. In the terms of
+//! distributed systems this is a failure detector with leases.
 
 use std::sync::Arc;
 
@@ -195,8 +196,8 @@ impl Attendee {
         (self.standing.location(), self.known, self.recalled, silence, age)
     }
 
-    /// The access point has begun, or begun again, and hears a roll by which the robot stands like this. Where that
-    /// is not valid any more, later ones that are may let it move, or call it gone.
+    /// Initialises the robot from the roll that an access point hears first after it has started or restarted. If that
+    /// roll is not valid any more, a later one may let the robot move or call it gone: it is suspended.
     fn recall(&mut self, called: Attendance, is_valid: bool) {
         let (standing, recalled) = match called {
             Attendance::Gone if is_valid => (Standing::Gone(Gone), false),
@@ -266,9 +267,9 @@ impl AccessPoint {
         attendees.any(|(robot, attendee)| attendee.may_begin() && !self.roster.contains(robot))
     }
 
-    /// It has begun, or begun again, while others went by this roll, in this control period: who does not take part
-    /// by it does not from now on. Nor does anyone that it has not heard of, until it does: it cannot tell for how
-    /// long that one has been silent.
+    /// Initialises the attendance of all robots from the roll that this access point hears first after it has started
+    /// or restarted. Robots that are absent in it stay absent. Robots that this access point has not heard itself are
+    /// suspended, because it cannot tell for how long they have been silent.
     pub(super) fn recall(&mut self, roll: &Roll, period: u32) {
         let is_valid = roll.is_valid(period, self.site.roll_validity());
         self.has_news = true;

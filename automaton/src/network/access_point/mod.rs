@@ -10,7 +10,7 @@ mod abstraction;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId};
+use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId};
 
 mod attendance;
 mod hearing;
@@ -19,9 +19,8 @@ mod service;
 #[cfg(test)]
 mod tests;
 
-use super::beacon::{Announced, Beacon, Bulletin, LastBeacon, Notice, Reports};
-use super::duty::Hop;
-use super::member::Sense;
+use super::beacon::{Announced, Beacon, Bulletin, CallRoute, LastBeacon, Notice, Reports};
+use super::member::{NodeOutputs, Sense};
 use super::message::Message;
 use super::order::Order;
 use super::record::MissionEvent;
@@ -32,7 +31,7 @@ use super::shared::{Shared, merge_election, renew};
 use super::site::Site;
 use crate::automaton::TransitionError;
 use crate::located::{Current, Place as _};
-use crate::node::{Input, Node, Outputs};
+use crate::node::{Input, Node};
 
 pub(super) use attendance::PATIENCE;
 pub use attendance::{ATTENDANCE_GLOSSARY, AttendanceAutomaton, attendance_automaton};
@@ -77,7 +76,7 @@ pub struct AccessPoint {
     election: Option<Arc<Election>>,
     election_rounds: usize,
     agreement: Option<Agreement>,
-    route: Option<(NoticeId, Shared<Vec<Hop>>)>,
+    route: Option<CallRoute>,
     crossing: Vec<usize>,
     /// Whether a team has found no robot that can be recruited.
     stretched: bool,
@@ -193,7 +192,7 @@ impl AccessPoint {
 
     /// Tells its neighbours and, over the wire, the other access points its public state and the roll: in as many rounds
     /// of a period as robots do, counted anew when something in it has changed, or a newer roll is known.
-    fn tell_beacon(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    fn tell_beacon(&mut self, outputs: &mut NodeOutputs) {
         let (beacon, _) = self.last_beacon.replace_by(self.public_state());
         if self.last_beacon.tell() {
             let (period, roll) = (self.period, self.roll.clone());
@@ -269,7 +268,7 @@ impl AccessPoint {
     }
 
     /// The first access point sends the user the newest notice.
-    fn tell_user(&self, outputs: &mut Outputs<Message, MissionEvent>) {
+    fn tell_user(&self, outputs: &mut NodeOutputs) {
         if self.is_first() {
             let user = self.site.nodes();
             outputs.send(user, Message::News(self.bulletin.clone()));
@@ -496,7 +495,7 @@ impl Node for AccessPoint {
     fn step(
         &mut self,
         input: Input<'_, Message, Sense>,
-        outputs: &mut Outputs<Message, MissionEvent>,
+        outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
         match input {
             Input::Heard { message: Message::Beacon { period, roll, beacon, .. }, .. } => {

@@ -6,12 +6,10 @@ use pleach_discrete::network::{ROUNDS, Round, RoundEvent};
 use pleach_guards::{Guard, network::control as guards};
 
 use crate::located::{Current, DataOf, Holds};
-use crate::node::Outputs;
 use crate::{Automaton, BuildError, Flow, Transfer};
 
 use super::super::act::{Act, acting};
-use super::super::message::Message;
-use super::super::record::MissionEvent;
+use super::super::member::NodeOutputs;
 use super::super::robot::RobotError;
 use super::super::service::{Listening, Resting, Rounds};
 use super::AccessPoint;
@@ -79,10 +77,7 @@ impl AccessPoint {
     }
 
     /// The clock is due: the access point takes the next row of its control period.
-    pub(super) fn tick(
-        &mut self,
-        outputs: &mut Outputs<Message, MissionEvent>,
-    ) -> Result<(), RobotError> {
+    pub(super) fn tick(&mut self, outputs: &mut NodeOutputs) -> Result<(), RobotError> {
         let site = Arc::clone(&self.site);
         site.automata.rounds.step_in_place::<Rounds>(self)?;
         for act in std::mem::take(&mut self.acts) {

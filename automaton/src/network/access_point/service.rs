@@ -211,26 +211,30 @@ impl AccessPoint {
     }
 
     /// The robots that take part in the elections for its task and knew no way to an access point when it was
-    /// announced: those that know one now, or those that still know none.
-    fn wayless(&self, has_found_way: bool) -> impl Iterator<Item = NodeId> {
-        let wayless = self.announced().into_iter().flat_map(|announced| announced.wayless.iter());
-        wayless.filter(move |&robot| self.connected.contains(robot) == has_found_way)
+    /// announced.
+    fn wayless(&self) -> impl Iterator<Item = NodeId> {
+        self.announced().into_iter().flat_map(|announced| announced.wayless.iter())
+    }
+
+    /// Those of them that still know none.
+    fn searchers(&self) -> impl Iterator<Item = NodeId> {
+        self.wayless().filter(|&robot| !self.connected.contains(robot))
+    }
+
+    /// Those of them that know one now, and could not bid in the election.
+    fn finders(&self) -> impl Iterator<Item = NodeId> {
+        self.wayless().filter(|&robot| self.connected.contains(robot))
     }
 
     /// For how many rounds it waits for a robot that knows no way to an access point, if there is one.
     pub(super) fn longest_search(&self) -> usize {
-        let is_awaited = self.wayless(false).next().is_some();
+        let is_awaited = self.searchers().next().is_some();
         usize::from(is_awaited) * self.patience_with_searches()
     }
 
     /// Rounds after which a robot that looks for another parent has found one, if there is one.
     pub(super) fn patience_with_searches(&self) -> usize {
         PATIENCE_WITH_SEARCHES * self.site.settings.rounds_per_period.min(self.longest_wait)
-    }
-
-    /// The robots that could not bid in the election for want of a way to an access point, and know one now.
-    fn finders(&self) -> impl Iterator<Item = NodeId> {
-        self.wayless(true)
     }
 
     /// A task that it announces now, with those who elect its leader.
@@ -365,27 +369,27 @@ fn electors_of(announcement: &Announcement) -> Announced {
 
 // ---- The resets ------------------------------------------------------------------------------
 
-/// Which task is announced as far as a place knows.
-trait Knows {
-    fn announced(&self) -> Option<Announced>;
+/// A location that may know which task is announced; most do not.
+trait KnowsTask {
+    fn announced(&self) -> Option<Announced> {
+        None
+    }
 }
 
-macro_rules! knows {
-    ($($place:ty: $announced:expr),+ $(,)?) => {
-        $(impl Knows for $place {
-            fn announced(&self) -> Option<Announced> {
-                ($announced)(self)
-            }
-        })+
-    };
+impl KnowsTask for Gathering {}
+impl KnowsTask for Over {}
+impl KnowsTask for Done {}
+
+impl KnowsTask for Electing {
+    fn announced(&self) -> Option<Announced> {
+        self.announced.clone()
+    }
 }
 
-knows! {
-    Gathering: |_| None,
-    Over: |_| None,
-    Electing: |place: &Electing| place.announced.clone(),
-    UnderWay: |place: &UnderWay| place.announced.clone(),
-    Done: |_| None,
+impl KnowsTask for UnderWay {
+    fn announced(&self) -> Option<Announced> {
+        self.announced.clone()
+    }
 }
 
 /// It takes up the notice that it has heard.
@@ -396,7 +400,7 @@ fn take_up(point: &AccessPoint, effects: &mut Effects) -> Option<Notice> {
     Some(notice)
 }
 
-fn hear_election<A: Knows>(
+fn hear_election<A: KnowsTask>(
     place: &A,
     point: &AccessPoint,
     effects: &mut Effects,
@@ -408,7 +412,7 @@ fn hear_election<A: Knows>(
     Some(Electing { announced })
 }
 
-fn hear_progress<A: Knows>(
+fn hear_progress<A: KnowsTask>(
     place: &A,
     point: &AccessPoint,
     effects: &mut Effects,
@@ -442,7 +446,7 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
 }
 
 /// The user has taken back the task that is pursued: those who pursue it stop, and its team is dissolved.
-fn withdraw<A: Knows>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
+fn withdraw<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
     let task = place.announced()?.task;
     if point.is_open(task) {
         effects.push(ServiceEffect::Report(MissionEvent::TaskWithdrawn { task }));
@@ -459,7 +463,7 @@ fn close<A: Clone>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Opt
 }
 
 /// The task is announced again, to the robots that are left.
-fn announce_again<A: Knows>(
+fn announce_again<A: KnowsTask>(
     place: &A,
     point: &AccessPoint,
     effects: &mut Effects,
@@ -520,7 +524,7 @@ fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects)
     let task = place.announced.as_ref()?.task;
     let name = point.site.name_of_task(task);
     let absent: Vec<NodeId> = point.absent_robots().collect();
-    let cut_off: Vec<NodeId> = point.wayless(false).collect();
+    let cut_off: Vec<NodeId> = point.searchers().collect();
     if !absent.is_empty() || !cut_off.is_empty() {
         let why = match absent.is_empty() {
             true => {
@@ -559,12 +563,12 @@ fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) 
 
 type Row = Transfer<Service, ServiceEvent, AccessPoint>;
 
-fn election_heard<A: DataOf<Serving> + Knows>() -> Row {
+fn election_heard<A: DataOf<Serving> + KnowsTask>() -> Row {
     let (guard, name) = (guards::election_heard(), "take up the election");
     Transfer::where_known(ServiceEvent::ElectionHeard, guard, name, hear_election::<A>)
 }
 
-fn progress_heard<A: DataOf<Serving> + Knows>() -> Row {
+fn progress_heard<A: DataOf<Serving> + KnowsTask>() -> Row {
     let (guard, name) = (guards::progress_heard(), "take up the notice");
     Transfer::where_known(ServiceEvent::ProgressHeard, guard, name, hear_progress::<A>)
 }
@@ -583,12 +587,12 @@ fn announces<A: DataOf<Serving>>(guard: Guard) -> Row {
     Transfer::where_known(ServiceEvent::Announces, guard, "announce the next task", announce::<A>)
 }
 
-fn announces_again<A: DataOf<Serving> + Knows>(guard: Guard) -> Row {
+fn announces_again<A: DataOf<Serving> + KnowsTask>(guard: Guard) -> Row {
     let name = "announce the task again";
     Transfer::where_known(ServiceEvent::AnnouncesAgain, guard, name, announce_again::<A>)
 }
 
-fn withdraws<A: DataOf<Serving> + Knows>() -> Row {
+fn withdraws<A: DataOf<Serving> + KnowsTask>() -> Row {
     let (guard, name) = (guards::withdraws(), "announce that the task is taken back");
     Transfer::where_known(ServiceEvent::Withdraws, guard, name, withdraw::<A>)
 }

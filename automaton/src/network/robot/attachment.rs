@@ -77,11 +77,11 @@ impl Robot {
                 && !self.bears_branch()
                 && !self.hears_no_parent()
         };
-        let unused = !self.tree_is_frozen()
-            && !self.is_engaged()
-            && if self.duty.is_bound() { self.is_eager() } else { is_unused() };
+        let counts = if self.duty.is_bound() { self.is_eager() } else { is_unused() };
+        let is_paused = self.tree_is_frozen() || self.is_engaged();
         let enough = PATIENCE_WITH_UNUSED_POSTS + 1;
-        self.unused_periods = if unused { enough.min(self.unused_periods + 1) } else { 0 };
+        self.unused_periods =
+            if counts && !is_paused { enough.min(self.unused_periods + 1) } else { 0 };
         self.is_quiet &= self.unused_periods < PATIENCE_WITH_UNUSED_POSTS;
     }
 

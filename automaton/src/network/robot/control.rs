@@ -9,7 +9,6 @@ use pleach_discrete::network::{CONTROL, Stage, StageEvent};
 use pleach_guards::{Guard, network::control as guards};
 
 use crate::located::{Current, DataOf, Holds};
-use crate::node::Outputs;
 use crate::{Automaton, BuildError, Flow, Transfer};
 
 use super::super::act::{self, acting};
@@ -17,8 +16,7 @@ use super::super::control::{
     Beacons, Control, Flows, Moving, Multipliers, Negotiation, OldFlows, Planning, Reserving,
     Sweeps,
 };
-use super::super::message::Message;
-use super::super::record::MissionEvent;
+use super::super::member::NodeOutputs;
 use super::{Robot, RobotError};
 
 /// The automaton of the control period.
@@ -123,7 +121,7 @@ impl Robot {
     pub(super) fn tick(
         &mut self,
         passed: usize,
-        outputs: &mut Outputs<Message, MissionEvent>,
+        outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
         self.round_count.pass(passed + 1);
         let site = Arc::clone(&self.site);
@@ -135,11 +133,7 @@ impl Robot {
         Ok(())
     }
 
-    fn perform(
-        &mut self,
-        act: Act,
-        outputs: &mut Outputs<Message, MissionEvent>,
-    ) -> Result<(), RobotError> {
+    fn perform(&mut self, act: Act, outputs: &mut NodeOutputs) -> Result<(), RobotError> {
         match act {
             Act::RestartClock => self.restart_clock(),
             Act::Jump => self.jump()?,

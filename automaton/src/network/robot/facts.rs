@@ -14,6 +14,12 @@ use super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::lineage::HeardWay;
 use super::rounds::SweepRound;
 
+/// A robot gives up when it has made no progress for this many times the longest regular wait.
+const PATIENCE: f64 = 4.0;
+
+/// Control periods without motion that make a stationary point.
+pub(super) const STATIONARY_WINDOW: u32 = 8;
+
 macro_rules! facts {
     (
         quantities { $($(#[doc = $measure:literal])+ $quantity:ident,)+ }
@@ -444,6 +450,14 @@ impl Robot {
         }
     }
 
+    /// Control periods without progress after which the robot gives up. The longest regular wait is the window of a
+    /// stationary point or the way along one link: a robot on Σ may wait until the others of its subgroup have gone
+    /// theirs.
+    pub(super) fn patience(&self) -> f64 {
+        let walk = self.hard_length() / self.site.settings.step_radius;
+        PATIENCE * f64::from(STATIONARY_WINDOW).max(walk)
+    }
+
     /// Whether this robot has joined the team but the robot that it follows cannot attach to it
     /// yet.
     pub(super) fn is_pending(&self) -> bool {
@@ -457,17 +471,3 @@ impl Robot {
         }
     }
 }
-
-impl Robot {
-    /// A robot on Σ may have to wait until the others of its subgroup have gone their way.
-    pub(super) fn patience(&self) -> f64 {
-        let walk = self.hard_length() / self.site.settings.step_radius;
-        PATIENCE * f64::from(STATIONARY_WINDOW).max(walk)
-    }
-}
-
-/// The patience of a robot, in multiples of the longest regular wait or walk.
-const PATIENCE: f64 = 4.0;
-
-/// Control periods without motion that make a stationary point.
-pub(super) const STATIONARY_WINDOW: u32 = 8;

@@ -17,12 +17,15 @@ const BID_RESOLUTION: f64 = 1e-6;
 /// A replacer stands this many ρ beside the robot that it relieves.
 const BESIDE: f64 = 2.1;
 
-/// The classes of bids. A robot that cannot reach the task: robots that have stopped block every way.
-const SHUT_OFF: u8 = 0;
-/// One that could not be relieved of the task that it services.
-const IRREPLACEABLE: u8 = 1;
-/// One that can leave its post.
-const FREE: u8 = 2;
+/// The ranks of bids, the lowest first.
+enum Rank {
+    /// The robot cannot reach the task: robots that have stopped block every way.
+    Obstructed,
+    /// It could not be relieved of the task that it services.
+    Irreplaceable,
+    /// It can leave its post.
+    Free,
+}
 
 /// A task is announced: the robot places a bid for it (Remark 5.3).
 pub(super) fn begin_election<A>(
@@ -34,7 +37,7 @@ pub(super) fn begin_election<A>(
     effects.extend([
         MissionEffect::Restart,
         MissionEffect::Learn((robot.notice_id(), announcement.clone())),
-        MissionEffect::Elect(Election::new(robot.notice_id()), None, None),
+        MissionEffect::Elect(Election::new(robot.notice_id()), None),
         MissionEffect::Agree(None),
     ]);
     Some(LeaderElection)
@@ -69,6 +72,16 @@ pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects)
         }
     }
     Advance { path: None, in_vain: false }
+}
+
+/// Of bids that are alike otherwise, that in the tree of the first access point is the best.
+const fn economy_in_tree(root: usize) -> i64 {
+    -(root as i64)
+}
+
+/// The access point in whose tree the bidder is.
+const fn tree_of(bid: Bid) -> usize {
+    bid.economy.unsigned_abs() as usize
 }
 
 impl Robot {
@@ -114,14 +127,14 @@ impl Robot {
             return None;
         }
         let rank = if open_way.is_none() {
-            SHUT_OFF
+            Rank::Obstructed
         } else if self.could_be_relieved() {
-            FREE
+            Rank::Free
         } else {
-            IRREPLACEABLE
+            Rank::Irreplaceable
         };
         let merit = -(distance / unit).round() as i64;
-        Some(Bid { rank, merit, economy: -(root as i64) })
+        Some(Bid { rank: rank as u8, merit, economy: economy_in_tree(root) })
     }
 
     /// Whether another robot beside this one could service its task as well, so that it can be
@@ -132,6 +145,11 @@ impl Robot {
             let away = (self.position - place).norm();
             away.hypot(BESIDE * self.clearance()) <= self.site.settings.arrival_radius()
         })
+    }
+
+    /// Where a task is, if it has been announced by now.
+    pub(super) fn task_position(&self, task: usize) -> Option<Point> {
+        self.announcement()?.position_of(task)
     }
 
     /// The newest announcement by which robots go that it hears, if it does not go by it yet. Their notices come
@@ -161,7 +179,7 @@ impl Robot {
     /// there is one access point.
     fn root_of_winner(&self) -> Option<usize> {
         let best = self.election.as_ref()?.best().filter(|_| self.site.access_points.len() > 1);
-        best.map(|(bid, _)| bid.economy.unsigned_abs() as usize)
+        best.map(|(bid, _)| tree_of(bid))
     }
 
     /// The winner of the election that this robot takes part in, as far as it knows.

@@ -9,16 +9,14 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{
-    Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase,
-};
+use pleach_discrete::network::{Agreement, Election, IdSet, MISSION, MissionStep, NoticeId, Phase};
 use pleach_guards::{Guard, network::mission as guards};
 
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
-use super::super::beacon::{Announced, Notice};
-use super::super::duty::{Duty, Hop};
+use super::super::beacon::{Announced, CallRoute, Notice};
+use super::super::duty::Duty;
 use super::super::mission::{
     Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
@@ -46,8 +44,8 @@ pub enum MissionEffect {
     Accomplish,
     /// It has forgotten what became of the election by the announcement that it goes by.
     Forgotten,
-    /// It takes part in this election, with its own bid, from the way to the caller that it knows.
-    Elect(Election, Option<Bid>, Option<(NoticeId, Shared<Vec<Hop>>)>),
+    /// It takes part in this election, from the way to the caller that it knows.
+    Elect(Election, Option<CallRoute>),
     /// It forgets the way to the caller.
     ForgetRoute,
     /// It takes part in this agreement about Σ.
@@ -92,14 +90,10 @@ impl Holds<Mission> for Robot {
                     self.accomplished = self.announced.as_ref().map(|&(id, _)| id);
                 }
                 MissionEffect::Forgotten => self.forgetful = Arc::new(IdSet::singleton(self.id)),
-                MissionEffect::Elect(election, bid, route) => {
-                    (self.election, self.bid, self.route) = (Some(Arc::new(election)), bid, route);
+                MissionEffect::Elect(election, route) => {
+                    (self.election, self.bid, self.route) = (Some(Arc::new(election)), None, route);
                     self.waited_rounds = 1;
-                    match self.phase() {
-                        Phase::LeaderElection => self.answer_announcement(),
-                        Phase::RecruitElection => self.answer_call(),
-                        _ => {}
-                    }
+                    self.answer_election();
                 }
                 MissionEffect::ForgetRoute => self.route = None,
                 MissionEffect::Agree(agreement) => self.agreement = agreement,
@@ -146,16 +140,21 @@ impl Robot {
             neighbour.beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
             neighbour.beacon.tell_closed(&mut self.closed);
         }
+        self.answer_election();
+        if self.phase() == Phase::Shift {
+            self.report_arrival();
+            self.yield_post();
+        }
+        self.review_team();
+    }
+
+    /// Places its token in the election that it takes part in, if it can by now.
+    fn answer_election(&mut self) {
         match self.phase() {
             Phase::LeaderElection => self.answer_announcement(),
             Phase::RecruitElection => self.answer_call(),
-            Phase::Shift => {
-                self.report_arrival();
-                self.yield_post();
-            }
             _ => {}
         }
-        self.review_team();
     }
 
     /// The next notice on the mission, which this robot is the one to issue.

@@ -75,13 +75,13 @@ pub use view::RobotView;
 
 use crate::automaton::TransitionError;
 use crate::located::Current;
-use crate::node::Outputs;
 
 use super::beacon::{
-    Announced, Announcement, Beacon, Branch, Bulletin, LastBeacon, Notice, TeamReport,
+    Announced, Announcement, Beacon, Branch, Bulletin, CallRoute, LastBeacon, Notice, TeamReport,
 };
 use super::control::{Control, Moving};
-use super::duty::{Duty, Held, Hop, Standby, Station};
+use super::duty::{Duty, Held, Standby, Station};
+use super::member::NodeOutputs;
 use super::message::Message;
 use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
@@ -252,7 +252,7 @@ pub struct Robot {
     /// What it has bid in this election itself.
     bid: Option<Bid>,
     waited_rounds: usize,
-    route: Option<(NoticeId, Shared<Vec<Hop>>)>,
+    route: Option<CallRoute>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
     /// The access point in whose tree the leader of its team was elected, if there are several.
@@ -419,8 +419,8 @@ impl Robot {
         self.join_in(period);
     }
 
-    /// It forgets everything but its number, where it is in its control period and who takes part, and joins
-    /// in like one that has stopped for a moment.
+    /// Resets the robot as if it had just restarted. It keeps its number, its place in the control period and the
+    /// roll.
     pub(super) fn begin_again(&mut self) -> Result<(), TransitionError> {
         let role = self.role();
         let fresh = Robot::new(self.id, self.position, self.rate, Arc::clone(&self.site));
@@ -452,7 +452,7 @@ impl Robot {
 
     /// Tells its public state. One that stays the same is told in as many rounds of a period as it
     /// takes to be heard if some are lost, and then no more.
-    fn tell_beacon(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    fn tell_beacon(&mut self, outputs: &mut NodeOutputs) {
         let beacon = self.next_beacon();
         if self.last_beacon.tell() {
             let (period, roll) = (self.period, self.roll.clone());

@@ -17,13 +17,12 @@ use pleach_continuous::network::acceptance::{Capsule, Segment, is_acceptable};
 use pleach_discrete::network::consent::all_consent;
 use pleach_discrete::network::{NodeId, Stage};
 
+use super::super::member::NodeOutputs;
 use super::super::message::Message;
-use super::super::record::MissionEvent;
 use super::super::roll::Wreck;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
-use crate::node::Outputs;
 
 impl Robot {
     /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.
@@ -36,7 +35,7 @@ impl Robot {
     }
 
     /// Sends its proposed move, if it has one, until all that rely on it consent.
-    pub(super) fn tell_proposal(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    pub(super) fn tell_proposal(&mut self, outputs: &mut NodeOutputs) {
         if let Some(segment) = self.proposal
             && (self.told_move != self.proposal || !self.has_all_consents())
         {
@@ -128,7 +127,7 @@ impl Robot {
 
     /// Judges the moves that it has heard of together with its own: objects, and halves its own, or
     /// consents. Moves that are as they were when it accepted them are not judged again.
-    pub(super) fn judge_moves(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    pub(super) fn judge_moves(&mut self, outputs: &mut NodeOutputs) {
         if self.heard_moves.is_empty() && self.proposal.is_none() {
             self.must_judge_moves = false;
             return;
@@ -151,7 +150,7 @@ impl Robot {
 
     /// Whether all moves together are acceptable; if not, those that could be the cause are told so. Its own
     /// move is one of them unless those of others are too much by themselves.
-    fn accepts_moves(&mut self, outputs: &mut Outputs<Message, MissionEvent>) -> bool {
+    fn accepts_moves(&mut self, outputs: &mut NodeOutputs) -> bool {
         let (own, still) = (self.own_move(), Segment::still(self.position));
         let (is_overloaded, overstretched) =
             (self.is_overloaded(own), self.overstretched_parent(own));
@@ -165,8 +164,9 @@ impl Robot {
                 outputs.send(mover, Message::Objection { period });
             }
         }
-        let is_harmless = self.is_overloaded(still) || self.overstretched_parent(still).is_some();
-        if !is_harmless || self.is_last_chance() {
+        let others_exceed_limits =
+            self.is_overloaded(still) || self.overstretched_parent(still).is_some();
+        if !others_exceed_limits || self.is_last_chance() {
             self.yield_to_objection();
         }
         false
@@ -202,8 +202,9 @@ impl Robot {
         self.proposal.is_none() && (self.heard_moves.is_empty() || is_answered)
     }
 
-    /// Where a robot that makes this move may measure itself then: one that moves may stray, one that stays
-    /// although it wants to go on may measure itself anew, and the others stay where they are known to be.
+    /// Where a robot that makes this move may measure itself afterwards. One that moves may be off by 2e + m; one that
+    /// stays although it wants to go on may measure itself again, and be off by 2e; a parked one stays where it is
+    /// known to be.
     fn reach_of(&self, axis: Segment, is_parked: bool) -> Capsule {
         let radius = match (axis.length() > 0.0, is_parked) {
             (true, _) => self.stray(),

@@ -13,6 +13,7 @@
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
+use pleach_continuous::Point;
 use pleach_discrete::network::{Agreement, NodeId, Offer, Phase, Post, PostKind, Reply};
 
 use super::super::beacon::{Announced, TeamReport};
@@ -131,14 +132,14 @@ impl Robot {
     fn could_replace(&self, parked: &Neighbour) -> bool {
         let Some(station) = parked.station() else { return false };
         let settings = &self.site.settings;
-        let near = |place| (self.position - place) as pleach_continuous::Vector;
+        let distance_to = |place: Point| (self.position - place).norm();
         let within_reach = match station.post.kind {
             PostKind::Primary { .. } | PostKind::Redundant => true,
-            PostKind::Fixed => near(station.reference).norm() <= settings.arrival_radius(),
+            PostKind::Fixed => distance_to(station.reference) <= settings.arrival_radius(),
         };
         let services = station.post.task.is_none_or(|task| {
             self.task_position(task)
-                .is_some_and(|place| near(place).norm() <= settings.arrival_radius())
+                .is_some_and(|place| distance_to(place) <= settings.arrival_radius())
         });
         // Where the other stands for the parent itself, it does so beside this one then.
         let reaches_parent =
@@ -167,10 +168,6 @@ impl Robot {
                 self.site.walk(parked.position(), other.position()) <= self.hard_length()
             })
         })
-    }
-
-    pub(super) fn task_position(&self, task: usize) -> Option<pleach_continuous::Point> {
-        self.announcement()?.position_of(task)
     }
 
     // ---- What the guards ask -----------------------------------------------------------------

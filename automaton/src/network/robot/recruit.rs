@@ -6,7 +6,7 @@ use pleach_discrete::network::{Activity, Bid, Election, IdSet, NoticeId, Phase};
 
 use crate::located::Place as _;
 
-use super::super::beacon::{Announcement, Beacon, Notice, TeamReport};
+use super::super::beacon::{Announcement, Beacon, CallRoute, Notice, TeamReport};
 use super::super::duty::{Hop, Path, PathPlace};
 use super::super::mission::{Advance, PathAgreement, RecruitElection, Standstill};
 use super::super::record::{MissionEvent, Outcome};
@@ -15,15 +15,19 @@ use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
-/// The classes of bids. A robot that no tree connects to the caller bids only to show where it could help.
-const STRANDED: u8 = 0;
-/// A redundant robot that cannot reach the caller: robots that have stopped block the way.
-const SHUT_OFF: u8 = 1;
-/// The robot whose post bears the caller and nothing else joins the team where it stands, if no other
-/// robot can come.
-const BEARER: u8 = 2;
-/// A redundant robot.
-const AT_HAND: u8 = 3;
+/// The ranks of bids, the lowest first.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Rank {
+    /// A redundant robot that no tree connects to the caller bids only to show where it could help.
+    Disconnected,
+    /// A redundant robot that cannot reach the caller: robots that have stopped block the way.
+    Obstructed,
+    /// The robot on whose post nothing but the caller depends joins the team where it stands, if no other robot can
+    /// come.
+    ParentOfCaller,
+    /// A redundant robot.
+    Redundant,
+}
 
 /// Residuals in bids are compared in units of this: routes aim at the same reserve everywhere,
 /// and remaining differences are the dual iteration's noise.
@@ -60,7 +64,7 @@ pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitE
     let is_caller = matches!(*robot.notice(),
         Notice::Call { caller, .. } if caller == robot.id);
     let route = is_caller.then(|| robot.own_route(id)).flatten();
-    effects.push(MissionEffect::Elect(Election::new(id), None, route));
+    effects.push(MissionEffect::Elect(Election::new(id), route));
     RecruitElection { before: robot.mission.path().cloned(), standstill: None, ahead: false }
 }
 
@@ -118,12 +122,12 @@ impl Robot {
         let id = self.next_notice_id();
         effects.extend([
             MissionEffect::Issue(Notice::Call { caller: self.id, releases_leader }),
-            MissionEffect::Elect(Election::new(id), None, self.own_route(id)),
+            MissionEffect::Elect(Election::new(id), self.own_route(id)),
         ]);
     }
 
     /// The way of a call to the caller itself.
-    fn own_route(&self, call: NoticeId) -> Option<(NoticeId, Shared<Vec<Hop>>)> {
+    fn own_route(&self, call: NoticeId) -> Option<CallRoute> {
         self.own_hop(Vec::new()).map(|hop| (call, Shared::new(vec![hop])))
     }
 
@@ -154,15 +158,15 @@ impl Robot {
             let (eligible, stretched) = (Arc::new(eligible), self.stretched);
             Some(Announcement { eligible, again, stretched, ..known.clone() })
         };
-        let is_any_stranded = self.election.as_ref().is_some_and(|it| it.best().is_some());
-        if is_any_stranded && others.len() < known.eligible.len() && !others.is_empty() {
+        let is_any_disconnected = self.election.as_ref().is_some_and(|it| it.best().is_some());
+        if is_any_disconnected && others.len() < known.eligible.len() && !others.is_empty() {
             return announced_to(others, known.again);
         }
         let all = || (0..self.site.access_points.len()).collect();
         if !known.again && standstill.is_some_and(|team| team.near_other_tree) {
             return announced_to(all(), true);
         }
-        match is_any_stranded && self.stretched && !known.stretched {
+        match is_any_disconnected && self.stretched && !known.stretched {
             true => announced_to(all(), known.again),
             false => None,
         }
@@ -249,14 +253,14 @@ impl Robot {
         if self.election.as_deref().is_some_and(|election| election.has_token(self.id)) {
             return;
         }
-        let bid = match (&self.route, self.recruit_class()) {
+        let bid = match (&self.route, self.recruit_rank()) {
             (_, None) => None,
-            (Some((_, route)), Some(AT_HAND)) if !self.is_open(route) => {
-                Some(self.recruit_bid(SHUT_OFF, route.len()))
+            (Some((_, route)), Some(Rank::Redundant)) if !self.is_open(route) => {
+                Some(self.recruit_bid(Rank::Obstructed, route.len()))
             }
-            (Some((_, route)), Some(class)) => Some(self.recruit_bid(class, route.len())),
+            (Some((_, route)), Some(rank)) => Some(self.recruit_bid(rank, route.len())),
             (None, _) if self.waited_rounds < 2 * self.longest_wait() => return,
-            (None, _) => self.stranded_bid(),
+            (None, _) => self.disconnected_bid(),
         };
         self.place_token(bid);
     }
@@ -270,20 +274,20 @@ impl Robot {
         self.announcement().is_some_and(|announcement| announcement.roster.contains(self.id))
     }
 
-    /// In which class this robot may be recruited, if it may: where nothing depends on it but the caller.
-    fn recruit_class(&self) -> Option<u8> {
+    /// With which rank this robot may be recruited, if it may: where nothing depends on it but the caller.
+    fn recruit_rank(&self) -> Option<Rank> {
         if !self.takes_part_in_elections() {
             return None;
         }
         match self.duty.is_redundant() {
-            true => self.children().next().is_none().then_some(AT_HAND),
-            false => self.bears_caller_alone().then_some(BEARER),
+            true => self.children().next().is_none().then_some(Rank::Redundant),
+            false => self.bears_only_caller().then_some(Rank::ParentOfCaller),
         }
     }
 
     /// Whether this robot holds a plain post of the tree that bears nothing but the primary team, which
     /// calls for a recruit: the team can have its robot, and the post with it.
-    fn bears_caller_alone(&self) -> bool {
+    fn bears_only_caller(&self) -> bool {
         let Notice::Call { caller, releases_leader: false } = *self.notice() else { return false };
         // One that is not heard may have attached to another robot since.
         let is_heard = self.neighbour(caller).is_some_and(|caller| !caller.is_silent());
@@ -302,20 +306,20 @@ impl Robot {
     }
 
     /// The larger the residual, the better; ties go to the shorter path.
-    fn recruit_bid(&self, class: u8, hops: usize) -> Bid {
+    fn recruit_bid(&self, rank: Rank, hops: usize) -> Bid {
         let merit = (self.residual / RESIDUAL_RESOLUTION).round() as i64;
-        Bid { rank: class, merit, economy: -(hops as i64) }
+        Bid { rank: rank as u8, merit, economy: -(hops as i64) }
     }
 
     /// The bid of a redundant robot that no tree connects to the caller.
-    fn stranded_bid(&self) -> Option<Bid> {
+    fn disconnected_bid(&self) -> Option<Bid> {
         let root = self.lineage()?.root();
-        Some(Bid { rank: STRANDED, merit: -(root as i64), economy: 0 })
+        Some(Bid { rank: Rank::Disconnected as u8, merit: -(root as i64), economy: 0 })
     }
 
-    /// Whether a bid of this class is that of a robot that can come.
+    /// Whether a bid is that of a robot that can come.
     pub(super) const fn can_come(bid: Bid) -> bool {
-        bid.rank > STRANDED
+        bid.rank > Rank::Disconnected as u8
     }
 
     /// For how many rounds news may be under way, by the deepest place in a tree that it has heard of.

@@ -32,11 +32,10 @@ use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Lease, Spare};
 use serde::{Deserialize, Serialize};
 
+use super::super::member::NodeOutputs;
 use super::super::message::Message;
-use super::super::record::MissionEvent;
 use super::Robot;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
-use crate::node::Outputs;
 
 #[cfg(test)]
 mod lemma;
@@ -133,8 +132,6 @@ pub(super) struct Reservation {
     is_answered: bool,
 }
 
-type Out = Outputs<Message, MissionEvent>;
-
 impl FlowGrant {
     /// What is kept as the request with this number is answered.
     fn of(number: RequestNumber, lease: &Lease<f64>) -> Self {
@@ -222,9 +219,10 @@ impl HeldFlow {
     }
 }
 
-/// Raises flows and lowers others by as much, at once, where that takes no more time, and what is raised lasts as long
-/// as what is lowered, or as anything that is promised. A sender that has neither time nor flows to spare could not
-/// leave a link that hardly carries anything otherwise. Returns how much is taken over.
+/// Shifts flow, in equal amounts, from links that are to carry less to links that are to carry more; returns how much.
+/// The link that takes over is at least as reliable, and its lease lasts at least as long as that of the other, or as
+/// anything that is promised. Without this a sender with neither time nor flow to spare could not leave a link that
+/// hardly carries anything.
 fn replace_flows(flows: &mut [&mut HeldFlow], promised: u32) -> f64 {
     let mut taken_over = 0.0;
     let count = flows.len();
@@ -264,7 +262,7 @@ fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow]) -> f64 
 
 impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
-    pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
+    pub(super) fn ask_for_flows(&mut self, outputs: &mut NodeOutputs) {
         let (period, robots) = (self.period, self.site.robots);
         let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
         let knows_load = self.knows_load();
@@ -305,7 +303,7 @@ impl Robot {
 
     /// Takes in the requests and grants of the round; asks again, every few rounds, where there is no
     /// answer.
-    pub(super) fn take_in_requests(&mut self, outputs: &mut Out) {
+    pub(super) fn take_in_requests(&mut self, outputs: &mut NodeOutputs) {
         let is_late = self.round_count.is_for_asking_again();
         if is_late {
             self.flows.iter_mut().for_each(|held| held.is_due = held.is_open);
@@ -353,7 +351,7 @@ impl Robot {
         self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0).map(|kept| kept.from)
     }
 
-    fn ask(&mut self, at: usize, outputs: &mut Out) {
+    fn ask(&mut self, at: usize, outputs: &mut NodeOutputs) {
         let RequestNumber { period, number } = self.last_request;
         let number = if period == self.period { number + 1 } else { 1 };
         self.last_request = RequestNumber { period: self.period, number };
@@ -399,7 +397,7 @@ impl Robot {
 
     /// Raises flows as they are granted and lowers others that are not needed, makes the requests that are
     /// due, gives back what it does not use, and grants what it can forward. Every request gets an answer.
-    fn settle_flows(&mut self, outputs: &mut Out) {
+    fn settle_flows(&mut self, outputs: &mut NodeOutputs) {
         self.has_flow_news = false;
         if self.flows_in_use().any(HeldFlow::is_to_change) {
             self.change_flows();
@@ -452,7 +450,7 @@ impl Robot {
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
     /// granted for as long as these last; [a part](part_for_longer) for longer where it sends some of it back.
-    fn grant_flows(&mut self, outputs: &mut Out) {
+    fn grant_flows(&mut self, outputs: &mut NodeOutputs) {
         let needed = self.needed_outflow();
         let wanted =
             self.reservations.iter().map(|kept| (kept.wanted - kept.lease.flow()).max(0.0));

@@ -15,11 +15,11 @@ use pleach_continuous::network::routing::local::{LinkOffer, local_minimiser, wei
 use pleach_continuous::network::routing::repair::{Share, meet_demand};
 use pleach_discrete::network::NodeId;
 
+use super::super::member::NodeOutputs;
 use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::super::scenario::RoutingMethod;
 use super::Robot;
-use crate::node::Outputs;
 
 /// Links with less reliability than this carry nothing unless they belong to the tree: a step of
 /// both ends must not be able to break a link in use.
@@ -147,7 +147,7 @@ impl Robot {
     }
 
     /// Says how its equation c_i ≥ η stands.
-    pub(super) fn tell_multiplier(&self, outputs: &mut Outputs<Message, MissionEvent>) {
+    pub(super) fn tell_multiplier(&self, outputs: &mut NodeOutputs) {
         let report = match &self.routing {
             RoutingState::Adal(state) => state.report(),
             RoutingState::Dual(state) => {
@@ -252,7 +252,7 @@ impl Robot {
     }
 
     /// Tells its flows to their receivers, where they have changed.
-    pub(super) fn tell_flows(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    pub(super) fn tell_flows(&mut self, outputs: &mut NodeOutputs) {
         if !std::mem::take(&mut self.has_untold_flows) {
             return;
         }
@@ -314,7 +314,9 @@ impl Robot {
                     RoutingMethod::Dual => {
                         DualState::new(dual_step(state.multiplier(), step, residual, reserve))
                     }
-                    _ => state.step(step, residual, reserve),
+                    RoutingMethod::AcceleratedDual | RoutingMethod::Adal => {
+                        state.step(step, residual, reserve)
+                    }
                 };
             }
         }
@@ -331,7 +333,7 @@ impl Robot {
     }
 
     /// The sweep begins at the robots that no other sends its demand to.
-    pub(super) fn begin_sweep(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    pub(super) fn begin_sweep(&mut self, outputs: &mut NodeOutputs) {
         (self.has_swept, self.demands_passed_on) = (false, 0);
         if self.demands.is_empty() {
             self.pass_demand_on(true, outputs);
@@ -341,12 +343,7 @@ impl Robot {
     /// A tree child tells by how much its flow changes. In the first sweep of a period the robot
     /// waits for all of them, so that one message goes over each link; later ones begin where there
     /// is news, and every message is passed on.
-    pub(super) fn hear_demand(
-        &mut self,
-        from: NodeId,
-        more: f64,
-        outputs: &mut Outputs<Message, MissionEvent>,
-    ) {
+    pub(super) fn hear_demand(&mut self, from: NodeId, more: f64, outputs: &mut NodeOutputs) {
         if self.has_swept {
             self.inflow += more;
             self.pass_demand_on(false, outputs);
@@ -369,7 +366,7 @@ impl Robot {
     /// Passes on what it does not carry itself. In a tree that takes no more messages than there are
     /// robots; where robots on Σ stand in for others, each as it last heard, their demands can go round
     /// in a cycle, and end there.
-    fn pass_demand_on(&mut self, is_first: bool, outputs: &mut Outputs<Message, MissionEvent>) {
+    fn pass_demand_on(&mut self, is_first: bool, outputs: &mut NodeOutputs) {
         self.has_swept = true;
         let more = self.meet_demand(is_first);
         if let Some(parent) = self.upstream
@@ -391,7 +388,7 @@ impl Robot {
     }
 
     /// A further sweep begins where shortages have changed something.
-    pub(super) fn sweep_again(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    pub(super) fn sweep_again(&mut self, outputs: &mut NodeOutputs) {
         self.demands_passed_on = 0;
         if !self.has_shortage_news && !self.is_unsettled {
             return;
@@ -440,7 +437,7 @@ impl Robot {
 
     /// This robot may find that it cannot pass on what it is sent: it does without its reserve,
     /// and reports that once in a period.
-    pub(super) fn admit_shortage(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    pub(super) fn admit_shortage(&mut self, outputs: &mut NodeOutputs) {
         if self.is_infeasible() {
             self.give_up_reserve(outputs);
         }
@@ -448,11 +445,7 @@ impl Robot {
 
     /// A neighbour cannot pass on what it is sent. A robot whose parent it is does without its
     /// reserve from now on, and so must those behind; every other sends it nothing more.
-    pub(super) fn hear_shortage(
-        &mut self,
-        overloaded: NodeId,
-        outputs: &mut Outputs<Message, MissionEvent>,
-    ) {
+    pub(super) fn hear_shortage(&mut self, overloaded: NodeId, outputs: &mut NodeOutputs) {
         if self.upstream == Some(overloaded) {
             self.give_up_reserve(outputs);
         } else if let Some(at) = link_at(&self.links, overloaded) {
@@ -463,7 +456,7 @@ impl Robot {
         }
     }
 
-    fn give_up_reserve(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+    fn give_up_reserve(&mut self, outputs: &mut NodeOutputs) {
         if !std::mem::replace(&mut self.has_no_reserve, true) {
             self.has_shortage_news = true;
             outputs.broadcast(Message::Shortage);

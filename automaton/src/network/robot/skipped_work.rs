@@ -1,10 +1,9 @@
-//! What a robot leaves out: it processes messages, tells its state, evaluates its guards and goes through its links only
-//! where something has changed.
+//! Work that a robot skips where nothing has changed: processing messages, telling its state, evaluating guards, and
+//! going through its links.
 //!
-//! That is right if doing it would change nothing. Builds with debug assertions look wherever guards,
-//! facts, a beacon or links are left out, in one control period in [`PERIODS_PER_CHECK`]; with the feature
-//! `abstraction`, also whether processing messages again, on a copy, would change anything. Explorers ask that of
-//! every state of a robot.
+//! Skipping is right if the work would change nothing. Builds with debug assertions verify that for guards, facts,
+//! beacons and links, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
+//! messages, which are processed again on a copy. Explorers verify it in every state of a robot.
 
 use super::Robot;
 use crate::located::Place as _;

@@ -12,19 +12,17 @@ use std::sync::Arc;
 use pleach_discrete::network::{NodeId, Stage};
 
 use super::super::control::Control;
-use super::super::member::Sense;
+use super::super::member::{NodeOutputs, Sense};
 use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::Robot;
 use crate::automaton::{InvariantError, TransitionError};
 use crate::located::Place as _;
-use crate::node::{Input, Node, Outputs};
+use crate::node::{Input, Node};
 
 /// More transitions than this at one instant are taken for endless; a mission has about ten
 /// steps, and a robot takes a few of them at a time.
 const MOST_JUMPS: usize = 32;
-
-type Out = Outputs<Message, MissionEvent>;
 
 /// A node of the network cannot go on. It is small, since every step may return one.
 #[derive(Debug, thiserror::Error)]
@@ -78,7 +76,7 @@ impl Node for Robot {
     fn step(
         &mut self,
         input: Input<'_, Message, Sense>,
-        outputs: &mut Out,
+        outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
         match input {
             Input::Heard { from, message } => {
@@ -118,7 +116,7 @@ impl Node for Robot {
 }
 
 impl Robot {
-    fn sense(&mut self, sensed: Sense, outputs: &mut Out) -> Result<(), RobotError> {
+    fn sense(&mut self, sensed: Sense, outputs: &mut NodeOutputs) -> Result<(), RobotError> {
         match sensed {
             Sense::Position(position) => {
                 self.find_itself_at(position);
@@ -133,7 +131,7 @@ impl Robot {
     }
 
     /// Tells observers what has happened.
-    pub(super) fn tell_observers(&mut self, outputs: &mut Out) {
+    pub(super) fn tell_observers(&mut self, outputs: &mut NodeOutputs) {
         self.log.drain(..).for_each(|event| outputs.report(event));
     }
 
@@ -188,7 +186,7 @@ impl Robot {
 
     /// Most messages are beacons without news.
     #[inline]
-    fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
+    fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut NodeOutputs) {
         match message {
             Message::Beacon { period, roll, confirmed, beacon } => {
                 self.hear_roll(roll);
@@ -206,7 +204,7 @@ impl Robot {
     }
 
     #[inline(never)]
-    fn hear_of_routes(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
+    fn hear_of_routes(&mut self, from: NodeId, message: &Message, outputs: &mut NodeOutputs) {
         match message {
             Message::Multiplier { report, parent } => self.hear_multiplier(from, *report, *parent),
             Message::Flow(flow) => self.hear_flow(from, *flow),

@@ -89,9 +89,9 @@ impl<'a> RobotView<'a> {
         self.0.notice_id()
     }
 
-    /// The task that it goes by and how often a task had been announced again before.
-    pub fn announcement(self) -> (u32, Option<usize>) {
-        (self.0.epoch, self.0.current_task())
+    /// How often a task had been announced again before the announcement that it goes by.
+    pub const fn epoch(self) -> u32 {
+        self.0.epoch
     }
 
     /// The task announced last, as far as it knows.

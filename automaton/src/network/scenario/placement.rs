@@ -4,13 +4,12 @@ use std::collections::VecDeque;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::workspace::Polygon;
-use pleach_continuous::geometry::{Repair, Workspace, WorkspaceError};
+use pleach_continuous::geometry::{Neighbours, Repair, Workspace, WorkspaceError};
 use pleach_continuous::network::LinkReliability;
 use pleach_continuous::network::rates::Receiver;
 use pleach_continuous::network::routing::central::widest_reserve;
 use pleach_continuous::network::routing::problem::{DirectedLink, RoutingProblem};
 
-use super::buckets::Buckets;
 use super::validation::{ROUNDING, robot_key};
 use super::{Fault, KeyPath, Problem, Scenario};
 use crate::network::{Site, SiteError};
@@ -127,18 +126,21 @@ impl<'a> Ground<'a> {
     fn robots_too_close(&self) -> Vec<Fault> {
         let least = 2.0 * self.site.settings.planning_clearance();
         let margin = least / 2.0 - self.site.settings.clearance;
-        let mut apart = Buckets::new(least);
+        let neighbours = Neighbours::new(&self.robots, least);
+        let mut keeps_distance = vec![true; self.robots.len()];
         let mut faults = Vec::new();
         for (index, &place) in self.robots.iter().enumerate() {
-            let nearest = (apart.near(place))
-                .map(|(other, point)| (other, (point - place).norm()))
-                .min_by(|left, right| left.1.total_cmp(&right.1).then(left.0.cmp(&right.0)));
-            match nearest {
-                Some((other, distance)) if distance < least * (1.0 - ROUNDING) => faults.push(
-                    Problem::RobotsTooClose { other, distance, least, margin }
-                        .at(robot_key(index).key("position")),
-                ),
-                _ => apart.insert(index, place),
+            let before = neighbours.within(place, least).into_iter();
+            let nearest = before
+                .filter(|&other| other < index && keeps_distance[other])
+                .map(|other| (other, (self.robots[other] - place).norm()))
+                .min_by(|left, right| left.1.total_cmp(&right.1));
+            if let Some((other, distance)) = nearest
+                && distance < least * (1.0 - ROUNDING)
+            {
+                keeps_distance[index] = false;
+                let problem = Problem::RobotsTooClose { other, distance, least, margin };
+                faults.push(problem.at(robot_key(index).key("position")));
             }
         }
         faults
@@ -148,25 +150,26 @@ impl<'a> Ground<'a> {
     /// robots that no chain of such links reaches are faults.
     fn tree(&self) -> Result<Vec<Attached>, Vec<Fault>> {
         let longest = self.site.usual.build * (1.0 + ROUNDING);
-        let mut missing = Buckets::of(&self.robots, longest);
+        let neighbours = Neighbours::new(&self.robots, longest);
+        let mut is_missing = vec![true; self.robots.len()];
         let mut tree = Vec::with_capacity(self.robots.len());
         let mut reached: VecDeque<(Receiver, Point)> = (self.site.access_points.iter().enumerate())
             .map(|(number, &place)| (Receiver::AccessPoint(number), place))
             .collect();
         while let Some((parent, from)) = reached.pop_front() {
-            let mut linked = missing.take(from, |place| self.site.distance(from, place) <= longest);
-            linked.sort_unstable_by_key(|&(robot, _)| robot);
-            for (robot, place) in linked {
-                let reliability = self.site.link.reliability((place - from).norm());
-                tree.push(Attached { robot, parent, reliability });
-                reached.push_back((Receiver::Robot(robot), place));
+            for robot in neighbours.within(from, longest) {
+                let place = self.robots[robot];
+                if is_missing[robot] && self.site.distance(from, place) <= longest {
+                    is_missing[robot] = false;
+                    let reliability = self.site.link.reliability((place - from).norm());
+                    tree.push(Attached { robot, parent, reliability });
+                    reached.push_back((Receiver::Robot(robot), place));
+                }
             }
         }
         if tree.len() == self.robots.len() {
             return Ok(tree);
         }
-        let mut is_missing = vec![true; self.robots.len()];
-        tree.iter().for_each(|attached| is_missing[attached.robot] = false);
         let longest = self.site.usual.build;
         Err((0..self.robots.len())
             .filter(|&robot| is_missing[robot])
@@ -219,15 +222,14 @@ impl<'a> Ground<'a> {
     fn links(&self) -> Vec<DirectedLink> {
         let nodes: Vec<Point> =
             self.robots.iter().chain(&self.site.access_points).copied().collect();
-        let buckets = Buckets::of(&nodes, self.site.link.range());
+        let range = self.site.link.range();
+        let neighbours = Neighbours::new(&nodes, range);
         let count = self.robots.len();
         let mut links = Vec::new();
         for (sender, &place) in self.robots.iter().enumerate() {
-            let mut heard: Vec<_> =
-                buckets.near(place).filter(|&(node, _)| node != sender).collect();
-            heard.sort_unstable_by_key(|&(node, _)| node);
-            links.extend(heard.into_iter().filter_map(|(node, other)| {
-                let reliability = self.site.link.reliability((other - place).norm());
+            let heard = neighbours.within(place, range).into_iter().filter(|&node| node != sender);
+            links.extend(heard.filter_map(|node| {
+                let reliability = self.site.link.reliability((nodes[node] - place).norm());
                 let receiver = match node.checked_sub(count) {
                     Some(number) => Receiver::AccessPoint(number),
                     None => Receiver::Robot(node),

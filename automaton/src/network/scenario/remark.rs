@@ -3,11 +3,10 @@
 use std::fmt;
 
 use pleach_continuous::Point;
-use pleach_continuous::geometry::Repair;
+use pleach_continuous::geometry::{Neighbours, Repair};
 use pleach_continuous::network::LinkReliability;
 
 use super::super::robot::ROUNDS_TO_BE_HEARD;
-use super::buckets::Buckets;
 use super::placement::key_of_repair;
 use super::{Fleet, KeyPath, Settings, ValidScenario};
 use crate::network::Site;
@@ -214,6 +213,15 @@ impl Site {
     }
 }
 
+/// How many links there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LinkCount {
+    /// All of them.
+    pub links: usize,
+    /// Those that cross walls.
+    pub through_walls: usize,
+}
+
 impl ValidScenario {
     /// Everything worth a remark, places and times of tasks first, then the outline.
     pub fn remarks(&self) -> Vec<Remark> {
@@ -223,8 +231,9 @@ impl ValidScenario {
         let outline = site.repairs.iter().cloned().map(Remark::Outline);
         let mut sites = [self].into_iter().chain(self.fleets().iter().map(Fleet::scenario));
         let long = sites.find_map(|scenario| scenario.site().long_links());
-        let (links, crossing) = self.count_links();
-        let walls = (crossing > 0).then_some(Remark::ThroughWalls { crossing, links });
+        let LinkCount { links, through_walls } = self.count_links();
+        let walls =
+            (through_walls > 0).then_some(Remark::ThroughWalls { crossing: through_walls, links });
         let rounds = site.settings.rounds_per_period;
         let short =
             (!site.settings.has_rounds_for_exchanges()).then_some(Remark::ShortPeriods { rounds });
@@ -288,21 +297,22 @@ impl ValidScenario {
         (!is_reached).then_some(TaskRemark::Elsewhere)
     }
 
-    /// The links with R > 0 at the start but for those between access points, and how many of
-    /// them cross walls.
-    pub fn count_links(&self) -> (usize, usize) {
-        let site = self.site();
+    /// The links with R > 0 at the start but for those between access points.
+    pub fn count_links(&self) -> LinkCount {
+        let (site, range) = (self.site(), self.site().radio.range());
         let robots: Vec<Point> = self.robot.iter().map(|robot| robot.position.into()).collect();
         let nodes: Vec<Point> = robots.iter().chain(&site.access_points).copied().collect();
-        let buckets = Buckets::of(&nodes, site.radio.range());
-        let (mut links, mut crossing) = (0, 0);
+        let neighbours = Neighbours::new(&nodes, range);
+        let mut count = LinkCount { links: 0, through_walls: 0 };
         for (robot, &place) in robots.iter().enumerate() {
-            let later = buckets.near(place).filter(|&(other, _)| other > robot);
-            for (_, other) in later.filter(|(_, o)| (o - place).norm() < site.radio.range()) {
-                links += 1;
-                crossing += usize::from(site.workspace.segment_clearance(place, other) <= 0.0);
-            }
+            neighbours.for_each_within(place, range, |other, distance| {
+                if other > robot && distance < range {
+                    let clearance = site.workspace.segment_clearance(place, nodes[other]);
+                    count.links += 1;
+                    count.through_walls += usize::from(clearance <= 0.0);
+                }
+            });
         }
-        (links, crossing)
+        count
     }
 }

@@ -171,7 +171,8 @@ fn led(seen: &Snapshot, nodes: &[FaultyNode]) -> Result<(), Violation> {
     for (robot, node) in nodes.iter().enumerate().take(seen.roles.len()) {
         if let Some(known) = node.member().view().robot().filter(|_| node.is_running()) {
             let leads = seen.roles[robot] == Role::Leader && known.taking().is_none();
-            announcements.extend(leads.then_some((known.announcement(), robot)));
+            let announcement = (known.epoch(), known.current_task());
+            announcements.extend(leads.then_some((announcement, robot)));
         }
     }
     announcements.sort_unstable();

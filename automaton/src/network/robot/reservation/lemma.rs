@@ -113,7 +113,7 @@ impl Link {
 
     /// Takes a step, by the functions of the robots; returns how many requests and grants are sent.
     fn take(&mut self, step: Step) -> [usize; 2] {
-        let (mut asked, mut granted) = (Out::of(0), Out::of(0));
+        let (mut asked, mut granted) = (NodeOutputs::of(0), NodeOutputs::of(0));
         let Link { sender, receiver, asks, grants: given } = self;
         match step {
             Step::Plan(flow) => {

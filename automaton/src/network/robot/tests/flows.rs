@@ -3,15 +3,13 @@
 use pleach_continuous::network::LinkReliability as _;
 use pleach_discrete::network::reservation::Lease;
 
+use super::super::super::member::NodeOutputs;
 use super::super::super::message::Message;
-use super::super::MissionEvent;
 use super::super::reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
 use super::*;
-use crate::node::{Destination, Outputs};
+use crate::node::Destination;
 
 const LEASE: u32 = 8;
-
-type Out = Outputs<Message, MissionEvent>;
 
 /// Robot 0 with links to the access point, 1.2 away, and to robot 5, 1.0 away.
 pub(in super::super) fn router() -> Robot {
@@ -25,11 +23,11 @@ pub(in super::super) fn router() -> Robot {
     robot
 }
 
-fn sent(outputs: &mut Out) -> Vec<(Destination, Message)> {
+fn sent(outputs: &mut NodeOutputs) -> Vec<(Destination, Message)> {
     outputs.drain_sent().map(|envelope| (envelope.to, envelope.message)).collect()
 }
 
-pub(in super::super) fn requests(outputs: &mut Out) -> Vec<(Destination, FlowRequest)> {
+pub(in super::super) fn requests(outputs: &mut NodeOutputs) -> Vec<(Destination, FlowRequest)> {
     let asks = |(to, message)| match message {
         Message::AskFlow(request) => Some((to, request)),
         _ => None,
@@ -37,7 +35,7 @@ pub(in super::super) fn requests(outputs: &mut Out) -> Vec<(Destination, FlowReq
     sent(outputs).into_iter().filter_map(asks).collect()
 }
 
-pub(in super::super) fn grants(outputs: &mut Out) -> Vec<(Destination, FlowGrant)> {
+pub(in super::super) fn grants(outputs: &mut NodeOutputs) -> Vec<(Destination, FlowGrant)> {
     let grants = |(to, message)| match message {
         Message::GrantFlow(grant) => Some((to, grant)),
         _ => None,
@@ -48,7 +46,7 @@ pub(in super::super) fn grants(outputs: &mut Out) -> Vec<(Destination, FlowGrant
 /// The router asks robot 5 for a flow of 0.2 R.
 fn asking() -> (Robot, FlowRequest) {
     let mut robot = router();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     robot.links[0].share = 0.2;
     robot.ask_for_flows(&mut outputs);
     let request = requests(&mut outputs).first().expect("it asks").1;
@@ -82,7 +80,7 @@ fn links_are_those_that_are_reliable_enough_or_of_the_tree() {
 fn a_flow_is_raised_to_what_is_planned_and_granted() {
     let flow = |wanted: f64, granted: f64, busy: f64| {
         let mut robot = router();
-        let mut outputs = Outputs::of(0);
+        let mut outputs = NodeOutputs::of(0);
         let reliability = robot.links[0].reliability;
         robot.links[0].share = wanted / reliability;
         robot.links[1].share = busy;
@@ -109,7 +107,7 @@ fn a_flow_is_raised_to_what_is_planned_and_granted() {
 fn no_flow_is_raised_while_a_receiver_may_have_moved() {
     let flows = |consents: bool, passed: u32| {
         let mut robot = router();
-        let mut outputs = Outputs::of(0);
+        let mut outputs = NodeOutputs::of(0);
         let planned = |robot: &mut Robot, share: f64| {
             robot.links.iter_mut().for_each(|link| link.share = share);
         };
@@ -139,7 +137,7 @@ fn no_flow_is_raised_while_a_receiver_may_have_moved() {
 /// Robot 5 asks for a flow of 0.2; this robot sends 0.1 + `spare` to the access point, 0.1 of it its own.
 fn granted(spare: f64) -> (Robot, Vec<(Destination, FlowGrant)>) {
     let mut robot = router();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     let reliability = robot.links[1].reliability;
     robot.links[1].share = (0.1 + spare) / reliability;
     robot.ask_for_flows(&mut outputs);
@@ -169,7 +167,7 @@ fn no_more_is_granted_than_is_forwarded() {
 #[test]
 fn a_request_is_answered_once_and_an_older_one_never() {
     let (mut robot, _) = granted(0.3);
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     for _ in 0..2 {
         grants(&mut outputs);
         robot.has_flow_news = true;
@@ -197,7 +195,7 @@ fn a_request_is_answered_once_and_an_older_one_never() {
 #[test]
 fn grants_end_with_their_lease() {
     let (mut robot, _) = granted(0.3);
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     robot.ask_for_flows(&mut outputs);
     let until = robot.reservations[0].lease.until();
     for (period, senders) in [(until, 1), (until + 1, 0)] {
@@ -221,7 +219,7 @@ fn grants_end_with_their_lease() {
 fn grants_last_no_longer_than_the_flows_that_carry_them() {
     let until = |end: u32, kept: Option<(f64, u32)>| {
         let (mut robot, _) = granted(0.3);
-        let mut outputs = Outputs::of(0);
+        let mut outputs = NodeOutputs::of(0);
         robot.held_flow(ROBOTS).lease = Lease::of(f64::INFINITY, end);
         match kept {
             Some((flow, until)) => robot.reservations[0].lease = Lease::of(flow, until),
@@ -249,7 +247,7 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
 fn what_is_sent_back_carries_no_part_that_is_granted_for_longer() {
     let told = |to_access_point: f64| {
         let (mut robot, _) = granted(to_access_point - 0.1);
-        let mut outputs = Outputs::of(0);
+        let mut outputs = NodeOutputs::of(0);
         let back = &mut robot.links[0];
         back.share = 0.1 / back.reliability;
         let held = robot.held_flow(5);
@@ -282,7 +280,7 @@ fn what_is_sent_back_carries_no_part_that_is_granted_for_longer() {
 #[test]
 fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
     let (mut sender, FlowRequest { number, wanted, .. }) = asking();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     let part = wanted / 4.0;
     let for_longer = GrantedPart { flow: part, until: NOW + 4 };
     let grant = FlowGrant { number, flow: wanted, until: NOW + 2, part: Some(for_longer) };
@@ -300,7 +298,7 @@ fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
 #[test]
 fn a_part_is_renewed_when_the_rest_has_ended() {
     let (mut sender, FlowRequest { number, wanted, .. }) = asking();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     let grant = |share: f64, part_until: u32| FlowGrant {
         number,
         flow: wanted,
@@ -323,7 +321,7 @@ fn a_part_is_renewed_when_the_rest_has_ended() {
 fn malformed_grants_are_less_than_they_say() {
     let used = |flow: f64, until: u32, part: Option<(f64, u32)>| {
         let (mut sender, FlowRequest { number, wanted, .. }) = asking();
-        let mut outputs = Outputs::of(0);
+        let mut outputs = NodeOutputs::of(0);
         let part = part.map(|(flow, until)| GrantedPart { flow, until });
         sender.hear_grant(5, FlowGrant { number, flow, until, part });
         sender.take_in_requests(&mut outputs);
@@ -346,7 +344,7 @@ fn malformed_grants_are_less_than_they_say() {
 #[test]
 fn packets_flow_to_an_access_point_that_is_not_heard_for_a_while() {
     let mut robot = router();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     robot.links[1].share = 0.2;
     robot.ask_for_flows(&mut outputs);
     assert!(robot.sends_to(ROBOTS) && requests(&mut outputs).is_empty());
@@ -361,7 +359,7 @@ fn packets_flow_to_an_access_point_that_is_not_heard_for_a_while() {
 #[test]
 fn an_answer_to_an_older_request_counts_for_nothing() {
     let (mut robot, FlowRequest { number, .. }) = asking();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     let older = RequestNumber { number: number.number - 1, ..number };
     robot.hear_grant(5, FlowGrant { number: older, flow: 0.5, until: NOW + LEASE, part: None });
     robot.take_in_requests(&mut outputs);
@@ -373,7 +371,7 @@ fn an_answer_to_an_older_request_counts_for_nothing() {
 #[test]
 fn a_request_without_an_answer_is_made_again() {
     let (mut robot, FlowRequest { number: first, .. }) = asking();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     robot.round_count.restart();
     let mut again = Vec::new();
     for round in 1..=16 {
@@ -393,7 +391,7 @@ fn a_request_without_an_answer_is_made_again() {
 #[test]
 fn a_flow_is_lowered_where_the_rest_carries_what_is_needed() {
     let mut robot = router();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     let reliability = robot.links[1].reliability;
     robot.links[1].share = 0.4 / reliability;
     robot.ask_for_flows(&mut outputs);
@@ -428,7 +426,7 @@ fn a_multiplier_rises_while_less_leaves_than_comes_in() {
 #[test]
 fn flows_are_told_where_they_have_changed() {
     let mut robot = router();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     robot.links[0].share = 0.2;
     robot.links[1].share = 0.3;
     robot.tell_flows(&mut outputs);
@@ -464,7 +462,7 @@ fn a_robot_passes_on_the_demand_that_it_does_not_meet() {
         robot.hear_multiplier(from, report, parent);
     }
     assert_eq!(robot.demands.iter().map(|(child, _)| *child).collect::<Vec<_>>(), [1, 2]);
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     robot.begin_sweep(&mut outputs);
     robot.hear_demand(1, 0.1, &mut outputs);
     assert!(sent(&mut outputs).is_empty(), "it waits for the other one");
@@ -486,7 +484,7 @@ fn a_robot_passes_on_the_demand_that_it_does_not_meet() {
 #[test]
 fn flows_take_no_more_than_all_the_time_of_a_sender() {
     let mut robot = router();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     let [one, two] = [0, 1].map(|at| robot.links[at].reliability);
     (robot.links[0].share, robot.links[1].share) = (0.7, 0.7);
     robot.ask_for_flows(&mut outputs);
@@ -509,7 +507,7 @@ fn flows_take_no_more_than_all_the_time_of_a_sender() {
 #[test]
 fn flows_that_are_raised_together_share_the_time_that_is_left() {
     let mut robot = router();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     let [one, two] = [0, 1].map(|at| robot.links[at].reliability);
     (robot.links[0].share, robot.links[1].share) = (0.6, 0.0);
     robot.ask_for_flows(&mut outputs);
@@ -529,7 +527,7 @@ fn flows_that_are_raised_together_share_the_time_that_is_left() {
 fn a_flow_takes_the_place_of_another_without_time_or_flow_to_spare() {
     let flows = |old: f64, new: f64, lasts: u32| {
         let mut robot = router();
-        let mut outputs = Outputs::of(0);
+        let mut outputs = NodeOutputs::of(0);
         (robot.links[0].reliability, robot.links[1].reliability) = (new, old);
         robot.links[1].share = robot.rate / old;
         robot.ask_for_flows(&mut outputs);
@@ -562,7 +560,7 @@ fn no_more_demands_are_passed_on_in_a_sweep_than_there_are_robots() {
     robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
     robot.remember_parent();
     robot.survey_links();
-    let mut outputs = Outputs::of(0);
+    let mut outputs = NodeOutputs::of(0);
     robot.begin_sweep(&mut outputs);
     (0..2 * ROBOTS).for_each(|_| robot.hear_demand(1, 0.01, &mut outputs));
     let demands = sent(&mut outputs).into_iter();

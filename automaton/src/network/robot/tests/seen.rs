@@ -29,7 +29,7 @@ fn observers_see_a_robot_as_it_is() {
     let mut robot = robot();
     let view = robot.view();
     assert_eq!((view.id(), view.position(), view.residual()), (0, HERE, 0.0));
-    assert_eq!((view.announcement(), view.current_task()), ((0, None), None));
+    assert_eq!((view.epoch(), view.current_task()), (0, None));
     assert!(view.is_parked() && !view.is_active() && !view.leads());
     assert_eq!((view.goal(), view.tree_parent(), view.subgroups_done()), (None, None, 0));
     assert!(view.tree_links().is_empty() && view.active_subgroup().is_none());
@@ -39,7 +39,7 @@ fn observers_see_a_robot_as_it_is() {
     (robot.epoch, robot.residual) = (2, 0.5);
     robot.measures();
     let view = robot.view();
-    assert_eq!((view.announcement(), view.current_task()), ((2, Some(0)), Some(0)));
+    assert_eq!((view.epoch(), view.current_task()), (2, Some(0)));
     assert!(!view.is_parked() && view.is_active() && view.leads());
     assert_eq!((view.goal(), view.tree_parent()), (Some(east(3.0)), Some(5)));
     assert_eq!((view.tree_links().len(), view.residual()), (1, 0.5));
