@@ -1,9 +1,9 @@
 //! Hybrid automata as typed Rust values, and a distributed robot network written with them.
 //!
 //! A hybrid automaton jumps between locations and flows within them. Here its parts are values:
-//! locations and events are enums, guards and invariants are [predicates](guards::Predicate) that
-//! can be evaluated, printed and analysed, flows and resets are formulas too, or functions under a
-//! name. An [`Automaton`](automaton::Automaton) puts them together and refuses parts that do not
+//! locations and events are enums; guards and invariants are [predicates](guards::Predicate) that
+//! can be evaluated, printed and analysed; flows and resets are formulas too, or named functions.
+//! An [`Automaton`](automaton::Automaton) puts them together and refuses parts that do not
 //! fit; a [`Composition`](automaton::composition) joins automata by labels; one
 //! [`Executor`](automaton::Executor) runs them through hybrid time; [`diagram`](automaton::diagram)
 //! draws them, and [temporal formulas](verify::temporal) judge their trajectories.
@@ -37,7 +37,7 @@
 //! assert!((first.at.t - 10.0 * (20.0f64 / 18.0).ln()).abs() < 1e-12);
 //! assert_eq!(trajectory.location(0, first.at.t), Some("on"));
 //!
-//! // Whatever happens, the room is within its band from the first 2 s to the 58th.
+//! // From 2 s to 58 s the room is within its band.
 //! use pleach::verify::temporal::{Status, always, within};
 //! let band = temperature.at_least(17.9) & temperature.at_most(22.1);
 //! let judgement = always(within(2.0, 58.0)?, band).judge(&trajectory)?;
@@ -47,17 +47,17 @@
 //!
 //! The examples of the repository are the classics of the field: bouncing ball, thermostat, two
 //! tanks, a clock network, a platoon and others, each tested against a closed form or a published
-//! answer. The rest of this page runs the model that comes with the framework: the robot network
-//! of *Global Planning for Multi-Robot Communication Networks in Complex Environments*, robots that
-//! grow trees of relays from access points to tasks, each of them an automaton that decides from
-//! its own state and from what it hears.
+//! answer. The rest of this page runs the model that comes with the framework, the robot network of
+//! *Global Planning for Multi-Robot Communication Networks in Complex Environments*: robots that
+//! grow trees of relays from access points to tasks. Each robot is an automaton that decides from
+//! its own state and from the messages that it hears.
 //!
 //! # A mission
 //!
 //! A [`Scenario`](automaton::network::scenario::Scenario) is plain data. A
-//! [`ValidScenario`](automaton::network::scenario::ValidScenario) is one that a mission can start
-//! from: read from a file by [`scenario_file::read`], or built. Here is a room of 1.2 by 0.6 with an access point at the left
-//! and a task at the right, farther away than one link carries.
+//! [`ValidScenario`](automaton::network::scenario::ValidScenario) is one from which a mission can
+//! start: read from a file by [`scenario_file::read`], or built as here. This is a room of 1.2 by 0.6
+//! with an access point at the left and a task at the right, farther away than one link reaches.
 //!
 //! ```
 //! use pleach::automaton::network::scenario::{
@@ -83,8 +83,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`mission::run`] runs it to its end. [`Watcher`](mission::Watcher)s see more than
-//! the end; the [`Summary`](summary::Summary) that the program prints is one.
+//! [`mission::run`] runs the mission to its end. [`Watcher`](mission::Watcher)s see every control
+//! period; the [`Summary`](summary::Summary) that the program prints is one of them.
 //!
 //! ```
 //! # use pleach::automaton::network::scenario::{
@@ -114,19 +114,20 @@
 //! assert_eq!(completed.end.outcome, Outcome::Serviced);
 //! assert_eq!(summary.recruits(), 1); // one relay between the access point and the leader
 //!
-//! // The monitor has held every instant of the mission against the properties in `verify`.
+//! // The monitor has checked every instant of the mission against the properties in `verify`.
 //! let closest = completed.extremes.pair_distance.ok_or("there are three robots")?;
 //! assert!(closest.value >= 2.0 * 0.01); // 2ρ, where ρ is l/40 by default
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A custom watcher is a few lines: see the README. A custom medium, that loses
-//! messages for example, goes into [`mission::run_network`].
+//! The README has a custom watcher of a few lines. A custom medium, for example one that delays
+//! messages within a control period, goes into the network that [`mission::run_network`] runs; for
+//! one that loses messages there is [`mission::run_network_with_faults`].
 //!
 //! # An automaton
 //!
-//! The discrete behaviour of a robot is a few automata over its state. They are values too: the same
-//! tables that run can be asked and drawn.
+//! The discrete behaviour of a robot is a few automata over its state. They are values too: the
+//! tables that are run can also be queried and drawn.
 //!
 //! ```
 //! use pleach::automaton::{diagram, network::duty_automaton};
@@ -135,7 +136,7 @@
 //! let automaton = duty_automaton()?;
 //! let duties = automaton.table();
 //! assert_eq!(duties.next(Activity::Standby, DutyEvent::Elected), Ok(Activity::Leading));
-//! // A leaf services a task: it goes only where another robot has come in its place.
+//! // A leaf services a task: it leaves only when another robot has taken its place.
 //! assert!(duties.next(Activity::Leaf, DutyEvent::Retired).is_err());
 //! assert!(diagram::mermaid(&automaton).starts_with("stateDiagram-v2"));
 //! # Ok::<(), pleach::automaton::BuildError>(())
@@ -152,8 +153,8 @@
 //! | [`verify`] | [temporal logic](verify::temporal) over trajectories; [the properties of the network](verify::network), each stated once, and their monitor; [reachability](verify::reach) of any automaton |
 //! | this crate | [scenario files](scenario_file), [missions](mission), [traces](trace), [summaries](summary), [stories](story), [figures], [pages](page); models and questions of [SpaceEx](spaceex) |
 //!
-//! `docs/model.md` of the repository leads from each equation and algorithm of the paper to the item
-//! that holds it.
+//! `docs/model.md` in the repository leads from each equation and algorithm of the paper to the item
+//! that implements it.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
 

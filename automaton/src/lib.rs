@@ -5,11 +5,11 @@
 //! [predicates as data](pleach_guards). It can be
 //!
 //! * **run**: an automaton over [coordinates](mod@coordinates), or a [`composition`] of several,
-//!   runs as it is and leaves a [`Trajectory`]; anything else that is a [`System`] runs on the same
-//!   [`Executor`]. What a run is, the [executor's page](executor) and `docs/semantics.md` say;
+//!   runs as it is and yields a [`Trajectory`]; any other [`System`] runs on the same [`Executor`].
+//!   The [executor's page](executor) and `docs/semantics.md` define what a run is;
 //! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG, LaTeX and tables from the automaton itself,
-//!   so that pictures cannot drift from the code, and plots what it went through;
-//! * **covered**: [`coverage`] counts what a set of runs has been through, and what it left out;
+//!   so that pictures cannot drift from the code, and plots its trajectories;
+//! * **covered**: [`coverage`] counts what a set of runs has exercised, and what it has not;
 //! * **checked**: [`decision`] finds a state in which guards and invariants hold together, or proves
 //!   that there is none.
 //!

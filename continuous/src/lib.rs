@@ -1,8 +1,8 @@
 //! The continuous layer: flows, geometry of the workspace, communication and motion.
 //!
 //! [`flow`] is for all models: exact and integrated solutions, and the events on them. The rest is
-//! for the robot network and behind the feature `network`, which is on by default; there lengths
-//! are in the scenario's own unit, times in seconds.
+//! for the robot network and requires the feature `network`, which is on by default; lengths there
+//! are in the scenario's own unit, and times in seconds.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
 

@@ -1,12 +1,12 @@
 //! Locations, events and transition tables: the discrete layer, pure and small.
 //!
-//! A hybrid automaton jumps between *locations*; an *event* is the name under which it jumps. All
-//! that the discrete layer knows of a model is one [`TransitionTable`]: which event leads from
-//! which location to which, how urgently, and in which order where several could. Running,
+//! A hybrid automaton jumps between *locations*; an *event* is the name of a jump. All that the
+//! discrete layer knows of a model is one [`TransitionTable`]: which event leads from which location
+//! to which, how urgently, and in which order if several transitions could be taken. Running,
 //! drawing, checking and proving read the same table.
 //!
-//! No number of the continuous world gets here, nothing is allocated while running, and every
-//! order is total; that keeps the layer within reach of exhaustive checks and proofs.
+//! No continuous value gets here, nothing is allocated while running, and every order is total; that
+//! keeps the layer within reach of exhaustive checks and proofs.
 //!
 //! ```
 //! use pleach_discrete::{vocabulary, Row, TransitionTable, Urgency};

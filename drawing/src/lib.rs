@@ -1,9 +1,9 @@
-//! What every picture is made of: a sheet, strokes and texts on it, axes with round numbers, and
-//! the colours and typefaces that all pictures share.
+//! The parts of every picture: a sheet, strokes and texts on it, axes with round numbers, and the
+//! colours and typefaces that all pictures share.
 //!
 //! Functions return [`svg`] elements with a position and without a style. The caller adds the style:
 //! a class of a style sheet, or colours and widths. Coordinates are in pixels, y downwards, and are
-//! written in one way, so that equal pictures have equal bytes.
+//! always written in the same way, so that equal pictures have equal bytes.
 //!
 //! ```
 //! use pleach_drawing::{line, sheet, style, text};

@@ -1,12 +1,12 @@
 //! Exhaustive exploration: every state that a discrete system can reach, in every order of events.
 //!
-//! The package tests the packages that are published, and is not published itself: [`network`]
-//! explores the protocol of the robots, by the code that they run.
+//! This package tests the published packages, and is not published itself: [`network`] explores the
+//! protocol of the robots by means of the code that they run.
 //!
 //! A [`Model`] says where it starts and what may happen next. [`explore`] visits its states
-//! breadth first, so that the way to a state that it finds is a shortest one, and checks each
-//! with the properties given. What it has visited is a [`StateGraph`]: a finite graph, on which
-//! [`traps`](StateGraph::traps) decides what must happen on every fair path.
+//! breadth first, so that the path to each state that it finds is a shortest one, and checks each
+//! state against the given properties. The visited states form a [`StateGraph`], a finite graph, on
+//! which [`traps`](StateGraph::traps) decides what must happen on every fair path.
 //!
 //! ```
 //! use pleach_exploration::{Fairness, Model, Property, explore};

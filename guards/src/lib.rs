@@ -24,9 +24,9 @@
 //!
 //! # Margins
 //!
-//! Beside its truth a predicate has a *margin*: how far the state is from changing the verdict,
+//! Besides its truth value a predicate has a *margin*: how far the state is from changing the verdict,
 //! in the unit of what is compared. The margin of a ≤ b is b − a; *and* takes the smallest margin,
-//! *or* the largest, *not* turns the sign. A positive margin means that the predicate holds, a
+//! *or* takes the largest, *not* reverses the sign. A positive margin means that the predicate holds, a
 //! negative one that it does not; at margin 0 strictness decides. This is the robustness of
 //! signal temporal logic for a single instant (Donzé and Maler 2010,
 //! [doi:10.1007/978-3-642-15297-9_9](https://doi.org/10.1007/978-3-642-15297-9_9)); an executor
@@ -34,8 +34,8 @@
 //!
 //! # Text
 //!
-//! What prints also reads, with the operators of mathematics or those of a keyboard, and nothing
-//! is lost on the way:
+//! Everything that is printed can be parsed again, with mathematical or ASCII operators, and nothing
+//! is lost in between:
 //!
 //! ```
 //! use pleach_guards::{Predicate, norm, variable};
@@ -52,13 +52,12 @@
 //!
 //! # Where data ends
 //!
-//! What no expression can say, such as a look-up in a table, goes into a function under a name:
-//! [`Predicate::function`]. It is evaluated and combined like any other predicate, but what it
+//! What no expression can say goes into a named function: [`Predicate::function`]. It is evaluated and combined like any other predicate, but what it
 //! reads is unknown; [`Predicate::functions`] tells which of them an analysis cannot see into.
 //!
 //! # Analysis
 //!
-//! Data can be asked more than its value in one state: where in a box of states a predicate can
+//! Guards as data can be asked for more than their value in one state: where in a box of states a predicate can
 //! hold ([`Predicate::truth`]), which comparisons make it up ([`Predicate::disjunctive_form`]),
 //! whether an expression is affine ([`Expression::linear_form`]), how it changes
 //! ([`Expression::derivative`]), and what becomes of it when variables are replaced
@@ -66,7 +65,7 @@
 //!
 //! # Where things are
 //!
-//! [`expression`], with its [tables](table), and [`predicate`] are the data, [`function`] is the way out of it, [`valuation`]
+//! [`expression`], with its [tables](table), and [`predicate`] are the data, [`function`] holds what is not data, [`valuation`]
 //! is what they are evaluated on, [`guard`] gives a predicate its name, and [`crossing`] follows
 //! margins over time. [`mod@print`] writes all of it as Unicode text and LaTeX, [`parse`] reads
 //! the text, and `serialization` (feature `serde`) takes it into files.
@@ -75,7 +74,7 @@
 //! predicates over whole boxes of states by [`interval`] arithmetic; [`linear`] reads off the
 //! coefficients of affine expressions, [`derivative`] differentiates, [`substitution`] renames
 //! variables and applies resets, and [`normal_form`] resolves negations and lists alternatives.
-//! [`program`] compiles all of it for hot loops, and [`tape`] lists of expressions together;
+//! [`program`] compiles all of it for hot loops, and [`tape`] compiles lists of expressions together;
 //! [`sides`] makes smooth expressions of those with kinks;
 //! [`course`] follows predicates over time, with [`enclosure`]s of moving quantities.
 

@@ -1,9 +1,9 @@
-//! Properties stated once, and monitors over trajectories.
+//! Properties stated once, monitors over trajectories, and reachability.
 //!
 //! Each property is a documented pure function. Monitors, tests, exhaustive exploration and
 //! proofs call that function, so that all of them speak of the same thing.
-//! [`temporal`] judges trajectories of any system by formulas over time; [`network`] holds the
-//! properties of the robot network.
+//! [`temporal`] judges trajectories of any system by formulas over time; [`reach`] encloses all runs
+//! of an automaton; [`network`] holds the properties of the robot network.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
 
