@@ -107,10 +107,7 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
         MissionEvent::Stationary { robot, team } => (
             match team.as_slice() {
                 [] => format!("the team of robot {robot} is at a stationary point, {LEADERLESS}"),
-                team => format!(
-                    "the primary team {} is at a stationary point, robot {robot} last",
-                    list(team)
-                ),
+                team => format!("the primary team {} is at a stationary point", list(team)),
             },
             moment(
                 Moment::Stationary,

@@ -27,8 +27,9 @@ use pleach::verify::network::storm::Storm;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 27] = [
+const WRITTEN: [&str; 29] = [
     "README.md",
+    "CONTRIBUTING.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
     "docs/architecture.md",
@@ -52,6 +53,7 @@ const WRITTEN: [&str; 27] = [
     "docs/how-to/trace.md",
     "docs/how-to/mcap.md",
     "docs/how-to/python.md",
+    "docs/how-to/errands.md",
     "docs/how-to/teams.md",
     "docs/how-to/processes.md",
     "docs/how-to/real-robots.md",
@@ -105,8 +107,8 @@ const INTRODUCTION: &str = "\
 
 # The automata of the network
 
-Every robot runs the first five of these automata over its own state, every access point the next
-three, one of them for each robot, and the user the last. This page is written by the library from the tables, guards, resets,
+Every robot runs the first five of these automata over its own state. Every access point runs the next three, the
+second of them once for each robot. The user runs the last. This page is written by the library from the tables, guards, resets,
 flows, invariants and laws that the nodes run. A transition reads `event [guard] / reset (urgency,
 priority)`; all of them are taken *at once*, and where several could be, the smaller priority goes
 first. A location shows its flow, its invariant after the word \"while\", and what is chosen there
@@ -152,9 +154,9 @@ hears; those of priority 1 are taken by the access point that the user has asked
 ";
 
 const ATTENDANCE: &str = "\
-Access points keep a record of each robot. The first one calls the roll from it once a control period: robots that are
-present may move, those that are suspended or returning may not, and others expect to hear them, and others go round
-those that are gone. Between a roll that lets a robot move and one that calls it gone no roll is valid for both.
+Access points keep a record of each robot. From it the first one calls the roll once a control period. Robots that are
+present may move. Those that are suspended or returning may not, but others still expect to hear them. Robots that are
+gone are obstacles to the others. Between a roll that lets a robot move and one that calls it gone no roll is valid for both.
 ";
 
 const ROUNDS: &str = "\

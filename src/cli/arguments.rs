@@ -44,56 +44,56 @@ pub enum Command {
     ///
     /// Several scenarios, values to sweep or repeats give a table with a line for each run, and
     /// the exit status of the worst: 1, then 4, then 3, then 0. Ctrl-C or SIGTERM ends a mission
-    /// in order: trace, summary and figures cover it up to then, and the exit status is 3.
+    /// cleanly: trace, summary and figures cover it up to then, and the exit status is 3.
     ///
-    /// With --loss and --stop messages are lost and robots stop; only what no fault may break is
-    /// checked then.
+    /// With --loss and --stop, messages are lost and robots stop; only what no fault may break is
+    /// then checked.
     Run(RunArguments),
     /// Check whether missions can start from scenarios, and draw their starts
     ///
     /// Only the first control period is run. Mistakes are reported with file, line, key and what would be right (exit
-    /// status 2). Tasks that no robot can service are named (exit status 3), and the links of
-    /// the start that cross walls, which the model of the radio does not see, are counted.
+    /// status 2). Tasks that no robot can service are named (exit status 3). Links at the start
+    /// that cross walls, which the model of the radio ignores, are counted.
     Check(CheckArguments),
-    /// Make a scenario of a map: ROS map server, MovingAI, GeoJSON or SVG
+    /// Make a scenario from a map: ROS map server, MovingAI, GeoJSON or SVG
     ///
-    /// Prints a scenario that runs. Maps of cells are traced and simplified, and walls stay
+    /// Prints a scenario that is ready to run. Maps of cells are traced and simplified, and walls stay
     /// closed. What was simplified or left out, and passages too narrow for robots,
     /// are reported on the error output.
     Import(ImportArguments),
     /// Judge a finished run from its trace alone
     ///
-    /// Everything that the trace says is held against the definitions: motion, communication and
-    /// the tree at every instant, each event against the world and the events before it, and
+    /// Everything that the trace says is checked against the definitions: motion, communication and
+    /// the tree at every instant, each event against the state and the events before it, and
     /// teams, posts and phases against what follows from these. Exit status 0: it is sound; 4: the
-    /// first thing that is not is told, with the property, the step and the time; 2: the trace
-    /// cannot be read. The trace of a mission with faults says so, and is held against what no fault
-    /// may break.
+    /// first violation is printed, with the property, the step and the time; 2: the trace
+    /// cannot be read. The trace of a mission with faults says so, and is checked against what no
+    /// fault may break.
     Judge(JudgeArguments),
     /// Turn a trace into an MCAP recording, which Foxglove plays
     ///
-    /// In a program that is built with the feature `mcap`.
+    /// Needs a build with the feature `mcap`.
     Export {
         /// The trace, as `pleach run --trace` writes it
         trace: PathBuf,
         /// The recording
         recording: PathBuf,
     },
-    /// Draw one of the automata that the robots run
+    /// Draw one of the automata that robots, access points and the user run
     ///
-    /// The drawing is made from the transition table that the robots run, and printed.
+    /// The drawing is made from the transition table that they run, and printed.
     Diagram(DiagramArguments),
-    /// Make the page on which a mission plays from its trace
+    /// Make a page that plays a mission from its trace
     ///
-    /// The page is one HTML file that needs no other: the plan with robots, links and tree at every
-    /// control period, curves, the story and a summary. It shows as much as there is of a trace
-    /// that was cut off.
+    /// The page is one self-contained HTML file: the plan with robots, links and tree at every
+    /// control period, curves, the story and a summary. An incomplete trace is shown as far as it
+    /// goes.
     Page(PageArguments),
-    /// Say whether any run of a SpaceEx model comes to forbidden states
+    /// Decide whether any run of a SpaceEx model reaches forbidden states
     ///
     /// All runs are enclosed at once, from all initial states and for all inputs, with every rounding
-    /// error. Exit status: 0 if none comes there, 4 if one does, which is shown, and 3 if neither was
-    /// found.
+    /// error accounted for. Exit status: 0 if none reaches them, 4 if one does, which is shown, and 3
+    /// if it is undecided.
     Reach(super::reach::ReachArguments),
     /// Print a script that completes the arguments of pleach in a shell
     Completions {
@@ -145,7 +145,7 @@ pub struct RunArguments {
     /// Write figures without titles, for papers with captions of their own
     #[arg(long)]
     pub plain: bool,
-    /// Write each figure as PDF, too; in a program that is built with the feature `pdf`
+    /// Also write each figure as PDF; needs a build with the feature `pdf`
     #[arg(long, conflicts_with = "no_figures")]
     pub pdf: bool,
     /// Write a table of the runs to FILE as comma-separated values
@@ -196,7 +196,7 @@ pub struct ImportArguments {
     /// The name of the scenario [default: that of the map]
     #[arg(long)]
     pub name: Option<String>,
-    /// How far the outline may deviate; the floor is narrowed by as much before, so that it stays
+    /// How far the outline may deviate; the floor is first narrowed by as much, so that it stays
     /// within free cells [default: one cell, or a thousandth of the extent for curves]
     #[arg(long, value_name = "LENGTH")]
     pub tolerance: Option<f64>,
@@ -249,7 +249,8 @@ impl FromStr for Spot {
 pub struct PageArguments {
     /// The trace, a file of JSON lines, or `-` for the standard input
     pub trace: PathBuf,
-    /// Write the page to FILE, `-` for the standard output [default: the trace with the ending .html]
+    /// Write the page to FILE, `-` for the standard output [default: the name of the trace with the
+    /// extension .html]
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
@@ -280,7 +281,7 @@ pub enum Automaton {
     Exchange,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
-    /// Whether a robot's post belongs to a tree, by what its parent tells
+    /// Whether a robot's post belongs to a tree, from what its parent tells it
     Place,
     /// The control period of a robot: beacons, routes, the move, and the flow between samples
     Control,

@@ -18,8 +18,8 @@ pub struct FaultArguments {
     /// The seed that decides which messages are lost
     #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "loss")]
     pub loss_seed: u64,
-    /// Stop a robot in control period FROM: ROBOT@FROM for good, or ROBOT@FROM..TO until period TO, when
-    /// it restarts and has forgotten everything; repeat the option for other robots, each of which stops once
+    /// Stop a robot from control period FROM on: ROBOT@FROM for good, ROBOT@FROM..TO until period TO, when it
+    /// restarts having forgotten everything; repeat the option for other robots, each of which stops once
     #[arg(long, value_name = "ROBOT@FROM[..TO]")]
     pub stop: Vec<Stop>,
 }

@@ -28,13 +28,13 @@ pub struct ReachArguments {
     /// Cut affine flows into steps of SECONDS, whatever the configuration says
     #[arg(long, value_name = "SECONDS")]
     pub step: Option<f64>,
-    /// Make up to COUNT sets of the states in which a guard of a flow may hold
+    /// Cover the states of a flow in which a guard may hold by at most COUNT sets
     #[arg(long, value_name = "COUNT")]
     pub clusters: Option<usize>,
     /// Draw the sets, and runs inside, into FILE
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// The two variables, or `t`, that are drawn [default: those of the configuration, or t and the
+    /// The two variables to draw, where `t` is time [default: those of the configuration, or t and the
     /// first]
     #[arg(long, value_name = "X,Y")]
     pub axes: Option<String>,
