@@ -277,7 +277,17 @@ impl Robot {
         Some(match (current, best) {
             (Some((hops, anchor)), Some((fewer, _))) if hops <= fewer => Some(anchor),
             (Some((_, anchor)), None) => Some(anchor),
+            (None, None) => post.parent.filter(|&anchor| self.awaits_way_of(anchor)),
             (_, best) => best.map(|(_, anchor)| anchor),
+        })
+    }
+
+    /// Whether it hears what its post is attached to, over a link that may last, and that knows no way at present: a
+    /// robot that has come to its place of Σ hears of its way a few rounds later.
+    fn awaits_way_of(&self, anchor: Anchor) -> bool {
+        self.neighbour_at(anchor).is_some_and(|holder| {
+            holder.beacon.lineage.is_none()
+                && self.walk_to(holder) <= self.hard_length() * (1.0 + ROUNDING)
         })
     }
 

@@ -149,6 +149,15 @@ impl FlowGrant {
 }
 
 impl Reservation {
+    /// It is this control period. Whoever still wants more than has been granted asks again in it: a sender without a
+    /// link does not, and would not hear of a grant.
+    fn pass(&mut self, period: u32) {
+        self.lease.pass(period);
+        if self.asked.period < period {
+            self.wanted = self.wanted.min(self.lease.flow());
+        }
+    }
+
     /// Whether its request waits for an answer, or for more than has been granted.
     fn is_unmet(&self) -> bool {
         !self.is_answered || self.wanted > self.lease.flow() + SAME_FLOW
@@ -266,7 +275,7 @@ impl Robot {
         let (period, robots) = (self.period, self.site.robots);
         let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
         let knows_load = self.knows_load();
-        self.reservations.iter_mut().for_each(|kept| kept.lease.pass(period));
+        self.reservations.iter_mut().for_each(|kept| kept.pass(period));
         self.reservations.retain(|kept| kept.lease.until() >= period);
         for at in 0..self.links.len() {
             let RouteLink { to, reliability, is_retiring, .. } = self.links[at];

@@ -22,7 +22,7 @@ pub fn targets() -> Targets {
     };
     let laws = Laws::of("ψ")
         .case(Shifting, guards::changes_over(), "next access point on Σ", Robot::next_of_crossing)
-        .case(Shifting, guards::shifts(), "place ahead on Σ", Robot::reference_ahead)
+        .case(Shifting, guards::shifts(), "place ahead on Σ", Robot::place_ahead)
         .case(Following, guards::gives_way(), "place aside for the team", Robot::place_aside)
         .case(Following, guards::joins_over(), "next access point on Σ", Robot::next_of_crossing)
         .case(Following, guards::follows(), "robot ahead", Robot::team_goal)
@@ -54,6 +54,20 @@ impl Robot {
 
     fn reference_ahead(&self) -> Option<Point> {
         self.next_hop().map(|hop| hop.place.reference)
+    }
+
+    /// Where it goes along Σ: to the reference of the post ahead or, where it is within δ of that and not of the task
+    /// that is serviced there, on to the task. The robot that it relieves may stand before the reference. Both places are
+    /// within δ of the reference, and so is all that lies between them.
+    fn place_ahead(&self) -> Option<Point> {
+        let reference = self.reference_ahead()?;
+        let is_near =
+            |place: Point| (self.position - place).norm() <= self.site.settings.arrival_radius();
+        let task = self.next_hop()?.post.task.and_then(|task| self.task_position(task));
+        match task.filter(|&task| is_near(reference) && !is_near(task)) {
+            Some(task) => Some(self.site.place_to_service(task, self.position)),
+            None => Some(reference),
+        }
     }
 
     /// The place on Σ that it has left, and where it goes: to the place ahead, or to the team that it has joined.

@@ -95,6 +95,25 @@ fn a_parent_is_kept_up_to_d_hard_and_while_no_other_has_fewer_links() {
     assert_eq!(keeps(hard - LITTLE, &[12, 14, 13]), at(11), "more links");
 }
 
+/// A robot that has come to its place of Σ hears of its way a few rounds later.
+#[test]
+fn a_parent_that_knows_no_way_is_kept_while_there_is_no_other() {
+    let hard = robot().hard_length();
+    let keeps = |length: f64, others: &[Beacon]| {
+        let mut robot = robot();
+        robot.holds(redundant(0, 11));
+        let parent = beacon(1, east(length), fixed(11, 13), &[]);
+        choice(&mut robot, [&[parent], others].concat())
+    };
+    assert_eq!(keeps(hard - LITTLE, &[]), at(11));
+    assert_eq!(keeps(hard + LITTLE, &[]), None, "too long");
+    let other = beacon(2, west(0.5), fixed(12, 14), &[12, 14]);
+    assert_eq!(keeps(hard - LITTLE, &[other]), at(12), "another knows one");
+    let mut robot = robot();
+    robot.holds(redundant(0, 11));
+    assert_eq!(choice(&mut robot, []), None, "it is not heard");
+}
+
 #[test]
 fn no_robot_attaches_below_itself_nor_to_the_primary_team() {
     let mut below = robot();

@@ -152,6 +152,30 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     assert!(!last.has_arrived(), "the break point at the end is of another subgroup");
 }
 
+/// The robot that is relieved of a task may stand before the place from which that is serviced.
+#[test]
+fn a_robot_near_its_place_goes_on_to_the_task_that_is_serviced_there() {
+    let goal = |from: Point| {
+        let mut robot = shifting(0.5, false);
+        let Mission::Shift(shift) = &*robot.mission else { panic!("it walks") };
+        let mut path = (*shift.path).clone();
+        path.hops[1].post.task = Some(0);
+        let shift = Shift { path: Arc::new(path), ..shift.clone() };
+        robot.mission = Current::new(Mission::Shift(shift));
+        robot.knows_task(task());
+        robot.position = from;
+        robot.measures();
+        (robot.goal(), robot.has_arrived())
+    };
+    fn task() -> Point {
+        east(1.0) - Vector::new(0.0, 0.9 * SERVICE_RADIUS)
+    }
+    let beside = |away: f64| east(1.0) + Vector::new(0.0, away);
+    assert_eq!(goal(beside(SERVICE_RADIUS + LITTLE)), (Some(east(1.0)), false), "it is far off");
+    assert_eq!(goal(beside(0.5 * SERVICE_RADIUS)), (Some(task()), false));
+    assert_eq!(goal(beside(-0.5 * SERVICE_RADIUS)).0, Some(east(1.0)), "the task is near");
+}
+
 /// A robot that comes from the far side takes the post over where its links hold, or at the post itself.
 #[test]
 fn a_robot_has_arrived_where_the_links_of_the_post_hold() {

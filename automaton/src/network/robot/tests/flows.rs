@@ -164,6 +164,22 @@ fn no_more_is_granted_than_is_forwarded() {
     }
 }
 
+/// A sender that still wants it asks again; one that has lost its link would not hear of the grant.
+#[test]
+fn nothing_is_granted_to_a_request_of_an_earlier_control_period() {
+    let granted_later = |passed: u32| {
+        let (mut robot, _) = granted(0.0);
+        let mut outputs = NodeOutputs::of(0);
+        robot.period += passed;
+        robot.links[1].share += 0.3;
+        robot.ask_for_flows(&mut outputs);
+        let reserved: f64 = robot.reservations.iter().map(|kept| kept.lease.flow()).sum();
+        (grants(&mut outputs).len(), reserved)
+    };
+    assert_eq!(granted_later(0), (1, 0.2));
+    assert_eq!(granted_later(1), (0, 0.0));
+}
+
 #[test]
 fn a_request_is_answered_once_and_an_older_one_never() {
     let (mut robot, _) = granted(0.3);
