@@ -226,3 +226,23 @@ fn maps_that_are_none_are_refused() {
         assert!(error.contains(said), "{name}: {error}");
     }
 }
+
+#[test]
+fn polygons_of_an_unknown_kind_are_told() {
+    let polygon = |kind: &str, to: u32| {
+        format!(
+            r#"{{"type": "Feature", "properties": {{"kind": "{kind}"}}, "geometry": {{"type": "Polygon",
+                "coordinates": [[[0, 0], [{to}, 0], [{to}, {to}], [0, {to}], [0, 0]]]}}}}"#
+        )
+    };
+    let notes = |kind: &str| {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("kinds.geojson");
+        let features = [polygon("floor", 9), polygon(kind, 4)].join(", ");
+        let map = format!(r#"{{"type": "FeatureCollection", "features": [{features}]}}"#);
+        std::fs::write(&path, map).unwrap();
+        import::read(&path, &Reading { planar: true, ..Reading::default() }).unwrap().notes
+    };
+    assert!(notes("wall").is_empty());
+    let told = notes("Wall");
+    assert!(told[0].starts_with(r#"polygons of the kind "Wall" are taken as floor"#), "{told:?}");
+}

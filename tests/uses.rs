@@ -248,6 +248,12 @@ pub const USES: &[Use] = &[
     ("advance", "verify/src/reach/affine.rs", "verify/src/reach/flow.rs", "steps.advance(track)"),
     ("widen", ZONOTOPE, ZONOTOPE, "sum.widen(&self.slack)"),
     (
+        "of_fleet",
+        "verify/src/network/storm/mod.rs",
+        "src/mission.rs",
+        "storm::network(fleet.scenario(), &storm.of_fleet(fleet))",
+    ),
+    (
         "judged_faults",
         "verify/src/network/judge/referee.rs",
         "src/cli/judge.rs",

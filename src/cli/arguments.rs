@@ -218,7 +218,7 @@ pub struct ImportArguments {
     /// Put an access point here; several are possible [default: in the widest place]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub access_point: Vec<Spot>,
-    /// How many robots start around the access points
+    /// How many robots start around the access points where the map has none
     #[arg(long, value_name = "COUNT", default_value_t = 8)]
     pub robots: u16,
     /// Put a task here; several are possible [default: far from the access points]

@@ -5,6 +5,7 @@ use super::{MapPlaces, Plan, Reading, counted};
 use crate::figures::quantity;
 use geojson::{Feature, FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
 use i_overlay::core::fill_rule::FillRule;
+use std::collections::BTreeSet;
 
 /// The radius of the Earth in metres (mean radius of WGS 84).
 const EARTH: f64 = 6_371_008.8;
@@ -16,6 +17,8 @@ struct Found {
     walls: Vec<Ring>,
     places: MapPlaces,
     ignored: usize,
+    /// The kinds of polygons that are neither floor nor wall.
+    other_kinds: BTreeSet<String>,
 }
 
 /// Reads polygons as floor or walls, and points of the kinds `access_point`, `robot` and `task`.
@@ -50,6 +53,11 @@ pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
     if found.ignored > 0 {
         let ignored = counted(found.ignored, "geometry that is", "geometries that are");
         notes.push(format!("left out: {ignored} no polygon and no point of a known kind"));
+    }
+    for kind in &found.other_kinds {
+        notes.push(format!(
+            "polygons of the kind {kind:?} are taken as floor; walls have the kind \"wall\" or \"obstacle\""
+        ));
     }
     let Found { floors, walls, places, .. } = found;
     let [floors, walls] =
@@ -106,7 +114,11 @@ impl Found {
         let rings = oriented(polygon.iter().map(ring).collect());
         match kind {
             "wall" | "obstacle" => self.walls.extend(rings),
-            _ => self.floors.extend(rings),
+            "" | "floor" => self.floors.extend(rings),
+            other => {
+                self.other_kinds.insert(other.to_owned());
+                self.floors.extend(rings);
+            }
         }
     }
 }

@@ -162,6 +162,13 @@ pub const SHORTEST: f64 = 1e-6;
 /// The largest magnitude of a coordinate, in ranges of the links.
 pub const FARTHEST: f64 = 1e6;
 
+/// The largest magnitude of a coordinate in any unit: rounding stays below the tolerances of motion problems, which are
+/// 1e-12.
+pub const LARGEST_COORDINATE: f64 = 1e4;
+
+/// The smallest clearance in any unit: properties are held up to 1e-6.
+pub const SMALLEST_CLEARANCE: f64 = 1e-4;
+
 /// The most control periods that a scenario may state, of a mission and of the times of its tasks.
 pub const MOST_PERIODS: u32 = 1_000_000_000;
 

@@ -80,6 +80,18 @@ pub enum Problem {
          workspace to the origin, or choose another unit", short(*value), short(*most)
     )]
     TooFarAway { value: f64, most: f64 },
+    /// A coordinate that is too large in this unit.
+    #[error(
+        "{} is too large: coordinates are at most {}, so that rounding stays negligible; choose a larger unit, such as \
+         metres in place of millimetres", short(*value), short(*most)
+    )]
+    LargeCoordinate { value: f64, most: f64 },
+    /// A clearance that is too small in this unit.
+    #[error(
+        "{} is too small: properties are held up to 0.000001, so at least {}; choose a smaller unit, or raise the clearance",
+        short(*clearance), short(*least)
+    )]
+    SmallClearance { clearance: f64, least: f64 },
     /// A rate or reserve outside [0, 1].
     #[error("{} is not a share of the radio's rate: it must lie from 0 to 1", short(*value))]
     NotAShare { value: f64 },

@@ -1,6 +1,8 @@
 //! Whether the values of a scenario are in their ranges and fit each other.
 
-use super::control::{CONTROL, FARTHEST, MOST_PERIODS, SHORTEST, Values};
+use super::control::{
+    CONTROL, FARTHEST, LARGEST_COORDINATE, MOST_PERIODS, SHORTEST, SMALLEST_CLEARANCE, Values,
+};
 use super::radio::STEEPEST;
 use super::{
     Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, RoutingMethod, Scenario, Settings,
@@ -281,12 +283,21 @@ fn table_faults(scenario: &Scenario) -> Vec<Fault> {
         .collect()
 }
 
-/// Coordinates that are too large against the range of the links for distances to be exact.
+/// Coordinates that are too large against the range of the links, or in this unit, for distances to be exact.
 fn places_are_near(scenario: &Scenario) -> Vec<Fault> {
     let most = FARTHEST * scenario.link.max_range;
-    scenario.coordinate_faults(|value| {
+    let far = scenario.coordinate_faults(|value| {
         (value.abs() > most).then_some(Problem::TooFarAway { value, most })
-    })
+    });
+    if !far.is_empty() {
+        return far;
+    }
+    let most = LARGEST_COORDINATE;
+    let large = scenario.coordinate_faults(|value| {
+        (value.abs() > most).then_some(Problem::LargeCoordinate { value, most })
+    });
+    // The first stands for all: another unit changes them together.
+    large.into_iter().take(1).collect()
 }
 
 fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
@@ -301,6 +312,10 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
         let least = SHORTEST * max_range;
         let problem = Problem::RangesTooClose { full_range, max_range, least };
         return vec![problem.at(link_key("full_range"))];
+    }
+    if settings.clearance < SMALLEST_CLEARANCE {
+        let (clearance, least) = (settings.clearance, SMALLEST_CLEARANCE);
+        return vec![Problem::SmallClearance { clearance, least }.at(control_key("clearance"))];
     }
     let errors = errors_are_small(&settings);
     if !errors.is_empty() {
