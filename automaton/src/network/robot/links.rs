@@ -108,9 +108,8 @@ impl Robot {
         node.is_some_and(|node| self.walk_to(node) <= self.hard_length())
     }
 
-    /// Whether the robot could take this post on Σ where it is: the links to the parent of the post and to those of its
-    /// children that the robot hears are not too long. A robot on its way along Σ counts as the holder of the post that
-    /// it goes to.
+    /// Whether the robot could take this post on Σ where it is: the links to the parent of the post and to its children
+    /// are not too long. A robot on its way along Σ counts as the holder of the post that it goes to.
     pub(super) fn links_hold_at(&self, post: Post) -> bool {
         let coming = |node: &Neighbour| match node.beacon.duty {
             Some(Duty::Shifting(Shifting { place, .. })) => {
@@ -132,7 +131,18 @@ impl Robot {
             }
             None => true,
         };
-        reaches_parent && self.neighbours.iter().filter(is_child).all(is_near)
+        reaches_parent
+            && self.neighbours.iter().filter(is_child).all(is_near)
+            && self.reaches_branches_out_of_range(post.id)
+    }
+
+    /// Whether the links to those robots are not too long that this robot does not hear, and that are attached to the
+    /// holder of this post. They would not hear that this robot holds it.
+    fn reaches_branches_out_of_range(&self, post: PostId) -> bool {
+        let branches = self.holder(post).into_iter().flat_map(|it| it.beacon.branches.iter());
+        let mut unheard = branches
+            .filter(|branch| branch.robot != self.id && self.neighbour(branch.robot).is_none());
+        unheard.all(|branch| self.site.walk(self.position, branch.place) <= self.hard_length())
     }
 
     pub(super) fn named_parent(&self) -> Option<NodeId> {

@@ -3,6 +3,7 @@
 use pleach_continuous::network::reliability::LinkReliability as _;
 use pleach_discrete::network::MissionStep;
 
+use super::super::super::beacon::Branch;
 use super::super::super::duty::{Hop, PathPlace};
 use super::super::duties::Label;
 use super::*;
@@ -197,6 +198,17 @@ fn a_robot_has_arrived_where_the_links_of_the_post_hold() {
     assert!(!arrived(None, 1.0, away), "its parent is not heard");
     assert!(arrived(Some(1.0), hard - LITTLE, away) && !arrived(Some(1.0), hard + LITTLE, away));
     assert!(arrived(Some(hard + LITTLE), 1.0, 0.0), "it gets no nearer");
+    // The holder of the post tells of a child that the robot does not hear.
+    let unheard = |length: f64| {
+        let mut robot = shifting(0.5, false);
+        robot.position = east(1.0 + away);
+        robot.hears(beacon(4, east(0.0), fixed(13, 14), &[13, 14]));
+        let branch = Branch { robot: 5, place: robot.position - Vector::new(0.0, length) };
+        let branches = Arc::new(vec![branch]);
+        robot.hears(Beacon { branches, ..beacon(2, east(1.5), fixed(1, 13), &[1, 13, 14]) });
+        robot.has_arrived()
+    };
+    assert!(unheard(hard - LITTLE) && !unheard(hard + LITTLE));
     // The next robot of its subgroup is on its way to the post that bears the own one.
     let behind = |away: f64| {
         let mut robot = shifting(0.0, false);
