@@ -18,7 +18,7 @@ use pleach::cli::job::{self, Outputs};
 use pleach::cli::output::{self, tell};
 use pleach::cli::plan::Planned;
 use pleach::cli::progress::Progress;
-use pleach::cli::run::{status_of, told, warn_of};
+use pleach::cli::run::{told, warn_of};
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use pleach::mission::{Completed, Gallery};
@@ -102,7 +102,7 @@ pub fn show(
     })?;
     let text = told(&finished, arguments.trace.as_deref());
     output::say(&(text + &observatory.counts()))?;
-    Ok(status_of(&finished.record))
+    Ok(finished.record.status)
 }
 
 /// What is known from reports.
