@@ -179,6 +179,13 @@ pub enum Hindrance {
         /// What is left of what it could send on.
         residual: f64,
     },
+    /// A robot that sends to it, and nearly all the time: it objects to moves after which that takes longer.
+    Sender {
+        /// The other robot.
+        robot: usize,
+        /// For which share of the time it sends, to this robot and to others.
+        load: f64,
+    },
 }
 
 impl Certificate {

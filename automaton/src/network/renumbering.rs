@@ -183,9 +183,9 @@ impl Other {
 impl Standing {
     fn named(&mut self) -> Named<'_> {
         let hindrances = self.hindrances.iter_mut().filter_map(|hindrance| match hindrance {
-            Hindrance::Robot { robot: other, .. } | Hindrance::Link { to: other, .. } => {
-                Some(other)
-            }
+            Hindrance::Robot { robot: other, .. }
+            | Hindrance::Link { to: other, .. }
+            | Hindrance::Sender { robot: other, .. } => Some(other),
             Hindrance::Body { .. } | Hindrance::Wall { .. } | Hindrance::Load { .. } => None,
         });
         Named::nodes([&mut self.robot]).and(Named::nodes(hindrances))

@@ -13,6 +13,10 @@ use super::{
 /// 2ρ without ever reaching it, so δ is at least this many clearances (2 in Remark 5.5).
 const LEAST_SERVICE_RADIUS_IN_CLEARANCES: f64 = 2.3;
 
+/// The least distance over which reliability falls from 1 to 0, in ranges of the links: over a shorter one loads change
+/// so fast that robots object to every move.
+const NARROWEST: f64 = 0.01;
+
 /// The largest error of a position or a move, in clearances.
 const MOST_ERROR_IN_CLEARANCES: f64 = 0.5;
 
@@ -308,8 +312,8 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
         let problem = Problem::RangesReversed { full_range, max_range };
         return vec![problem.at(link_key("full_range"))];
     }
-    if max_range - full_range < SHORTEST * max_range {
-        let least = SHORTEST * max_range;
+    if max_range - full_range < NARROWEST * max_range * (1.0 - ROUNDING) {
+        let least = NARROWEST * max_range;
         let problem = Problem::RangesTooClose { full_range, max_range, least };
         return vec![problem.at(link_key("full_range"))];
     }

@@ -153,11 +153,20 @@ fn hindrances(
         };
         ends.clone().map(length).filter_map(at_limit)
     }));
-    let load: f64 = last.routes.iter().filter(|it| it.from == robot).map(|it| it.share).sum();
+    let load = load_of(robot, last);
     let residual = last.residuals[robot];
     let spent = residual < SPENT * limits.settings().routing_reserve;
     if load >= SATURATED || load > 0.0 && spent {
         found.push(Hindrance::Load { load, residual });
     }
+    let senders = last.routes.iter().filter(|it| it.to == robot && it.share > 0.0);
+    let loads = senders.map(|it| (it.from, load_of(it.from, last)));
+    let busy = loads.filter(|&(_, load)| load >= SATURATED);
+    found.extend(busy.map(|(robot, load)| Hindrance::Sender { robot, load }));
     found
+}
+
+/// Σ_j T_ij: for which share of the time a robot sends.
+pub(super) fn load_of(robot: usize, last: &Snapshot) -> f64 {
+    last.routes.iter().filter(|it| it.from == robot).map(|it| it.share).sum()
 }

@@ -8,11 +8,12 @@ use std::collections::BTreeSet;
 use pleach_automaton::network::certificate::{
     Attempt, Because, Bound, Certificate, Hindrance, Other, Standing, Then, Unreachable,
 };
-use pleach_automaton::network::record::{End, Outcome, Snapshot};
+use pleach_automaton::network::record::{End, Outcome, Route, Snapshot};
 use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
 use super::Judge;
+use super::account::load_of;
 use super::ground::Ground;
 use super::ledger::Stage;
 use super::terms::all_stay;
@@ -327,13 +328,24 @@ fn is_in_the_way(
             at_most("a share of the limit", AT_LIMIT * limit, length)
         }
         Hindrance::Load { load, residual } => {
-            let routes = last.routes.iter().filter(|route| route.from == robot);
-            equal("the load", load, routes.map(|route| route.share).sum(), SLACK)?;
+            equal("the load", load, load_of(robot, last), SLACK)?;
             equal("the residual", residual, last.residuals[robot], SLACK)?;
             let reserve = limits.settings().routing_reserve;
             match load >= SATURATED || load > 0.0 && residual < SPENT * reserve {
                 true => Ok(()),
                 false => Err(format!("a load of {load:.6} leaves a residual of {residual:.6}")),
+            }
+        }
+        Hindrance::Sender { robot: sender, load } => {
+            let sends =
+                |route: &Route| (route.from, route.to) == (sender, robot) && route.share > 0.0;
+            if !last.routes.iter().any(sends) {
+                return Err(format!("robot {sender} sends nothing to robot {robot}"));
+            }
+            equal("the load of a sender", load, load_of(sender, last), SLACK)?;
+            match load >= SATURATED {
+                true => Ok(()),
+                false => Err(format!("a load of {load:.6} leaves robot {sender} time to send")),
             }
         }
         ref other => Err(format!("the judge does not know the hindrance {other:?}")),
