@@ -436,13 +436,16 @@ mod tests {
         (-0.9..1.9, -0.9..0.9).prop_map(|(x, y)| point![x, y])
     }
 
+    /// The smallest clearance that a scenario may state.
+    const LITTLE: f64 = 1e-4;
+
     proptest! {
         #[test]
         fn clearance_is_what_dense_sampling_tends_to(from in place(), to in place()) {
             let hole = [[0.4, -0.3], [0.9, -0.1], [0.6, 0.4]];
             let mut scenario = sample::stated();
             scenario.workspace.holes = vec![hole.to_vec()];
-            scenario.control.clearance = Some(1e-6);
+            scenario.control.clearance = Some(LITTLE);
             scenario.robot.truncate(1);
             let limits = Limits::of(&sample::valid(scenario.clone()));
             let polygons = [&scenario.workspace.boundary[..], &hole];
@@ -473,9 +476,9 @@ mod tests {
                 // It starts inside the hole, ends there or passes through: the walls are met,
                 // or both ends lie inside.
                 Err(violation) => {
-                    prop_assert!(violation.measured <= 0.0);
+                    prop_assert!(violation.measured <= LITTLE);
                     let inside = |place| !limits.workspace().contains(place);
-                    prop_assert!(sampled <= spacing + 1e-12 || inside(from) && inside(to));
+                    prop_assert!(sampled <= spacing + LITTLE || inside(from) && inside(to));
                 }
             }
         }
