@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Bid, Election, NodeId, Phase};
+use pleach_discrete::network::{Bid, Election, NodeId, Phase, Post};
 
 use super::super::beacon::{Announced, Notice};
 use super::super::mission::{Advance, LeaderElection};
@@ -140,8 +140,8 @@ impl Robot {
     /// Whether another robot beside this one could service its task as well, so that it can be
     /// relieved of it: not where the task lies so deep in a wall that only one comes near enough.
     fn could_be_relieved(&self) -> bool {
-        let task = self.duty.post().and_then(|post| post.task);
-        task.and_then(|task| self.task_position(task)).is_none_or(|place| {
+        let task = self.duty.post().and_then(|post| self.task_at(post));
+        task.is_none_or(|place| {
             let away = (self.position - place).norm();
             away.hypot(BESIDE * self.clearance()) <= self.site.settings.arrival_radius()
         })
@@ -150,6 +150,11 @@ impl Robot {
     /// Where a task is, if it has been announced by now.
     pub(super) fn task_position(&self, task: usize) -> Option<Point> {
         self.announcement()?.position_of(task)
+    }
+
+    /// Where the task is that is serviced from a post, if one is and has been announced by now.
+    pub(super) fn task_at(&self, post: &Post) -> Option<Point> {
+        self.task_position(post.task?)
     }
 
     /// The newest announcement by which robots go that it hears, if it does not go by it yet. Their notices come

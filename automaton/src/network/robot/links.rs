@@ -136,8 +136,8 @@ impl Robot {
             && self.reaches_branches_out_of_range(post.id)
     }
 
-    /// Whether the links to those robots are not too long that this robot does not hear, and that are attached to the
-    /// holder of this post. They would not hear that this robot holds it.
+    /// Whether the robot is near enough to those that are attached to the holder of this post and that it does not hear
+    /// itself. They would not hear that this robot has taken the post over.
     fn reaches_branches_out_of_range(&self, post: PostId) -> bool {
         let branches = self.holder(post).into_iter().flat_map(|it| it.beacon.branches.iter());
         let mut unheard = branches

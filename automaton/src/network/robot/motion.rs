@@ -88,7 +88,7 @@ impl Robot {
         if !near(self.position, hop.place.reference) {
             return self.queues_behind_arrived();
         }
-        let services = hop.post.task.and_then(|task| self.task_position(task)).is_none_or(|task| {
+        let services = self.task_at(&hop.post).is_none_or(|task| {
             let way = self.site.free_space.geodesic(self.position, hop.place.reference);
             near(self.position, task)
                 && way.is_some_and(|way| way.waypoints.iter().all(|&corner| near(corner, task)))
@@ -244,7 +244,7 @@ impl Robot {
     /// The holder of a fixed post stays within δ of it, and of the task serviced from it.
     fn post_discs(&self) -> impl Iterator<Item = Disc> {
         let station = self.duty.station().filter(|station| station.post.is_fixed());
-        let task = station.and_then(|s| s.post.task).and_then(|task| self.task_position(task));
+        let task = station.and_then(|station| self.task_at(&station.post));
         let (radius, motion) =
             (self.site.settings.leash_radius(), self.site.settings.errors.motion);
         station.map(|station| station.reference).into_iter().chain(task).map(move |center| Disc {

@@ -149,8 +149,8 @@ impl FlowGrant {
 }
 
 impl Reservation {
-    /// It is this control period. Whoever still wants more than has been granted asks again in it: a sender without a
-    /// link does not, and would not hear of a grant.
+    /// Begins this control period. What was asked for in an earlier period and not granted is dropped: a sender that
+    /// still wants it asks again, and one whose link is gone would ignore a grant.
     fn pass(&mut self, period: u32) {
         self.lease.pass(period);
         if self.asked.period < period {

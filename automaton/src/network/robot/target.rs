@@ -56,15 +56,15 @@ impl Robot {
         self.next_hop().map(|hop| hop.place.reference)
     }
 
-    /// Where it goes along Σ: to the reference of the post ahead or, where it is within δ of that and not of the task
-    /// that is serviced there, on to the task. The robot that it relieves may stand before the reference. Both places are
-    /// within δ of the reference, and so is all that lies between them.
+    /// Where it goes along Σ: to the reference of the post ahead. Once it is within δ of the reference, but not of the
+    /// task of that post, it goes on to the task: the robot that it relieves may stand in front of the reference. On the
+    /// way it stays within δ of the reference, as the task is.
     fn place_ahead(&self) -> Option<Point> {
-        let reference = self.reference_ahead()?;
+        let hop = self.next_hop()?;
+        let reference = hop.place.reference;
         let is_near =
             |place: Point| (self.position - place).norm() <= self.site.settings.arrival_radius();
-        let task = self.next_hop()?.post.task.and_then(|task| self.task_position(task));
-        match task.filter(|&task| is_near(reference) && !is_near(task)) {
+        match self.task_at(&hop.post).filter(|&task| is_near(reference) && !is_near(task)) {
             Some(task) => Some(self.site.place_to_service(task, self.position)),
             None => Some(reference),
         }

@@ -132,6 +132,14 @@ fn shifting(gap: f64, arrived: bool) -> Robot {
     robot
 }
 
+/// Another path for a robot that is on its way along one.
+fn change_path(robot: &mut Robot, change: impl FnOnce(&mut Path)) {
+    let Mission::Shift(shift) = &*robot.mission else { panic!("it is on its way") };
+    let mut shift = shift.clone();
+    change(Arc::make_mut(&mut shift.path));
+    robot.mission = Current::new(Mission::Shift(shift));
+}
+
 /// Eq. (26): within δ of its place, or right behind the next of its subgroup that has arrived.
 #[test]
 fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
@@ -158,11 +166,7 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
 fn a_robot_near_its_place_goes_on_to_the_task_that_is_serviced_there() {
     let goal = |from: Point| {
         let mut robot = shifting(0.5, false);
-        let Mission::Shift(shift) = &*robot.mission else { panic!("it walks") };
-        let mut path = (*shift.path).clone();
-        path.hops[1].post.task = Some(0);
-        let shift = Shift { path: Arc::new(path), ..shift.clone() };
-        robot.mission = Current::new(Mission::Shift(shift));
+        change_path(&mut robot, |path| path.hops[1].post.task = Some(0));
         robot.knows_task(task());
         robot.position = from;
         robot.measures();
@@ -212,12 +216,7 @@ fn a_robot_has_arrived_where_the_links_of_the_post_hold() {
     // The next robot of its subgroup is on its way to the post that bears the own one.
     let behind = |away: f64| {
         let mut robot = shifting(0.0, false);
-        let Mission::Shift(shift) = &*robot.mission else { panic!("it walks") };
-        let mut shift = shift.clone();
-        let mut path = (*shift.path).clone();
-        path.hops[1].post = fixed(1, 2);
-        shift.path = Arc::new(path);
-        robot.mission = Current::new(Mission::Shift(shift));
+        change_path(&mut robot, |path| path.hops[1].post = fixed(1, 2));
         robot.position = east(1.0 + SERVICE_RADIUS / 2.0);
         let ahead = Duty::Shifting(Shifting { place: 1, left: None });
         let at = robot.position + Vector::new(away, 0.0);
@@ -236,13 +235,11 @@ fn a_recruit_goes_by_way_of_the_access_points_that_its_path_passes() {
     hall.access_point = [0.0, 1.2, 1.7].map(access_point).to_vec();
     let recruit = |crossing: &[usize], parent: NodeId, from: Point, ahead: Point| {
         let mut robot = Robot { site: robot_of(&hall).site, ..shifting(0.5, false) };
-        let Mission::Shift(shift) = &*robot.mission else { panic!("it is on its way") };
-        let mut path = Path::clone(&shift.path);
-        path.hops[0].crossing = crossing.to_vec();
-        path.hops[0].place = PathPlace { reference: from, position: from };
-        path.hops[1].place = PathPlace { reference: ahead, position: ahead };
-        let shift = Shift { path: Arc::new(path), ..shift.clone() };
-        robot.mission = Current::new(Mission::Shift(shift));
+        change_path(&mut robot, |path| {
+            path.hops[0].crossing = crossing.to_vec();
+            path.hops[0].place = PathPlace { reference: from, position: from };
+            path.hops[1].place = PathPlace { reference: ahead, position: ahead };
+        });
         (robot.position, robot.parent) = (from, Some(parent));
         robot.measures();
         (robot.goal(), robot.named_parent())
