@@ -135,12 +135,12 @@ impl Medium<Message, Point> for Radio {
         })
     }
 
-    /// Unless a node may answer at once: answers have the order of what they answer.
     fn mail(&mut self) -> Option<&Mail<Message>> {
-        let Radio { audiences, sent, expects_answer: false, mail, delivered, .. } = self else {
-            return None;
-        };
+        let Radio { audiences, sent, expects_answer, mail, delivered, .. } = self;
         mail.sort(sent, audiences.ends.len(), |envelope| audiences.receivers_of(envelope));
+        if std::mem::take(expects_answer) {
+            mail.expect_answers();
+        }
         *delivered += mail.len() as u64;
         Some(mail)
     }
@@ -222,8 +222,9 @@ mod tests {
             };
             let Ok(()) = match by_node {
                 true => {
-                    let mail = radio.mail().expect("nobody answers at once");
-                    (0..NODES).flat_map(|node| mail.of(node)).try_for_each(hand_over)
+                    let mail = radio.mail().expect("a radio sorts its messages");
+                    let deliveries = (0..NODES).flat_map(|node| mail.of(node));
+                    deliveries.map(|(_, delivery)| delivery).try_for_each(hand_over)
                 }
                 false => radio.deliver(hand_over),
             };

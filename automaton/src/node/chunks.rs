@@ -36,19 +36,21 @@ pub(super) struct Slot {
 pub(super) struct Steps<'a, M> {
     /// What is heard, if anything is, and the number of this delivery.
     pub mail: Option<(&'a Mail<M>, usize)>,
-    /// The round of ticks.
-    pub round: usize,
+    /// The round of ticks, if nodes tick.
+    pub round: Option<usize>,
 }
 
 /// What the nodes of a chunk leave when they have taken their steps.
 struct Outcome<N: Node> {
     outputs: Outputs<N::Message, N::Report>,
+    /// What nodes have said on hearing messages, each with the place of the message among all that were sent.
+    answers: Vec<(u32, Outputs<N::Message, N::Report>)>,
     result: Result<(), N::Error>,
 }
 
 impl<N: Node> Outcome<N> {
     const fn nothing() -> Self {
-        Outcome { outputs: Outputs::of(0), result: Ok(()) }
+        Outcome { outputs: Outputs::of(0), answers: Vec::new(), result: Ok(()) }
     }
 }
 
@@ -74,9 +76,14 @@ impl<N: Node> Chunks<N> {
         outcomes.resize_with(chunks.max(outcomes.len()), Outcome::nothing);
         let chunks = nodes.chunks_mut(length).zip(slots.chunks_mut(length)).zip(&mut *outcomes);
         for_each(threads, chunks.enumerate(), |(chunk, ((nodes, slots), outcome))| {
-            outcome.result = steps.take_in_turn(chunk * length, nodes, slots, &mut outcome.outputs);
+            outcome.result = steps.take_in_turn(chunk * length, nodes, slots, outcome);
         });
+        // Answers have the order of what they answer, and those to one message that of their senders.
+        let mut answers: Vec<_> =
+            outcomes.iter_mut().flat_map(|outcome| outcome.answers.drain(..)).collect();
+        answers.sort_by_key(|&(place, _)| place);
         let [first, others @ ..] = &mut outcomes[..] else { return Ok(()) };
+        answers.into_iter().for_each(|(_, answer)| first.outputs.append(answer));
         others.iter_mut().for_each(|other| first.outputs.append_reports(&mut other.outputs));
         outcomes.iter_mut().try_for_each(|outcome| std::mem::replace(&mut outcome.result, Ok(())))
     }
@@ -99,7 +106,7 @@ impl<N: Node> Chunks<N> {
     fn count(&self, steps: &Steps<'_, N::Message>) -> usize {
         match steps.mail {
             Some((mail, _)) => mail.len(),
-            None => self.slots.iter().filter(|slot| slot.is_due_in(steps.round)).count(),
+            None => self.slots.iter().filter(|slot| steps.is_due(slot)).count(),
         }
     }
 
@@ -160,22 +167,32 @@ impl<M> Steps<'_, M> {
         first: NodeId,
         nodes: &mut [N],
         slots: &mut [Slot],
-        outputs: &mut Outputs<M, N::Report>,
+        outcome: &mut Outcome<N>,
     ) -> Result<(), N::Error> {
+        let Outcome { outputs, answers, .. } = outcome;
         for (id, (node, slot)) in (first..).zip(nodes.iter_mut().zip(slots)) {
             let heard = self.mail.map(|(mail, number)| (mail.of(id), number));
-            if let Some((mut mail, number)) = heard.filter(|(mail, _)| mail.len() > 0) {
+            if let Some((mail, number)) = heard.filter(|(mail, _)| mail.len() > 0) {
                 slot.hear(number, mail.len());
-                mail.try_for_each(|Delivery { from, message, .. }| {
-                    slot.step(node, Input::Heard { from, message }, outputs.now_of(id))
-                })?;
+                for (place, Delivery { from, message, .. }) in mail {
+                    let before = outputs.counts();
+                    slot.step(node, Input::Heard { from, message }, outputs.now_of(id))?;
+                    if outputs.counts() != before {
+                        answers.push((place, outputs.split_off(before)));
+                    }
+                }
                 slot.ask(node);
             }
-            if slot.is_due_in(self.round) {
-                slot.tick(node, self.round, outputs.now_of(id))?;
+            if let Some(round) = self.round.filter(|&round| slot.is_due_in(round)) {
+                slot.tick(node, round, outputs.now_of(id))?;
             }
         }
         Ok(())
+    }
+
+    /// Whether the node of this slot ticks, if it hears nothing.
+    fn is_due(&self, slot: &Slot) -> bool {
+        self.round.is_some_and(|round| slot.is_due_in(round))
     }
 }
 

@@ -11,9 +11,10 @@
 //! in answer, before any clock ticks again. Steps of different nodes in one round do not see each
 //! other: the ticks of a round are one joint jump, and so are its deliveries.
 //!
-//! Since they do not, nodes may take their steps at once, on several threads. And where no node answers what it hears,
-//! so that ticks follow, each node that is due ticks right after it has heard its mail, while its state is in the
-//! cache. Both are still jumps of their own, and nothing but the time that they take tells the difference.
+//! Since they do not, nodes may take their steps at once, on several threads, and a node may hear all of its messages
+//! one after another, while its state is in the cache: what nodes answer is put into the order of what they answer. And
+//! where none answers, so that ticks follow, each node that is due ticks right after it has heard its mail. Both are
+//! still jumps of their own, and nothing but the time that they take tells the difference.
 
 use std::convert::Infallible;
 
@@ -114,7 +115,8 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         self.deliveries += 1;
         let Ensemble { chunks, medium, round, deliveries, .. } = self;
         if let Some(mail) = medium.mail() {
-            chunks.take(&Steps { mail: Some((mail, *deliveries)), round: *round })?;
+            let round = (!mail.may_be_answered()).then_some(*round);
+            chunks.take(&Steps { mail: Some((mail, *deliveries)), round })?;
         } else {
             medium.deliver(|delivery| chunks.hear(delivery, *deliveries))?;
         }
@@ -129,7 +131,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         };
         // What a node has heard may make it tick earlier than it has said, and not in the past.
         self.round = next.max(self.round);
-        self.chunks.take(&Steps { mail: None, round: self.round })?;
+        self.chunks.take(&Steps { mail: None, round: Some(self.round) })?;
         self.chunks.send(&mut self.medium);
         Ok(true)
     }
@@ -406,7 +408,11 @@ mod tests {
         sum: u64,
         rounds: u64,
         is_lonely: bool,
+        answers: bool,
     }
+
+    /// What a node answers; nothing is answered to it.
+    const ANSWER: u64 = 1;
 
     impl Node for Adder {
         type Message = u64;
@@ -421,8 +427,12 @@ mod tests {
             outputs: &mut Outputs<u64, u64>,
         ) -> Result<(), Infallible> {
             match input {
-                Input::Heard { message, .. } => {
-                    self.sum = self.sum.wrapping_mul(31).wrapping_add(*message + self.rounds);
+                Input::Heard { from, message } => {
+                    self.sum = self.sum.wrapping_mul(31).wrapping_add(*message % 97 + self.rounds);
+                    if self.answers && message.is_multiple_of(3) {
+                        outputs.report(self.sum);
+                        outputs.send(from, ANSWER);
+                    }
                 }
                 Input::Sensed(()) => {}
                 Input::Tick { passed } => {
@@ -451,11 +461,12 @@ mod tests {
         fn body(&self) {}
     }
 
-    /// A full mesh in which nobody answers at once, so that it offers its messages as mail.
+    /// A full mesh that offers its messages as mail.
     struct Sorted {
         mesh: FullMesh<u64>,
         nodes: Vec<NodeId>,
         mail: Mail<u64>,
+        answers: bool,
     }
 
     impl Medium<u64, ()> for Sorted {
@@ -487,11 +498,14 @@ mod tests {
                 sent.push(Envelope { from, to: Destination::One(to), message: *message });
                 Ok::<(), Infallible>(())
             });
-            let Sorted { nodes, mail, .. } = self;
+            let Sorted { nodes, mail, answers, .. } = self;
             mail.sort(&mut sent, nodes.len(), |envelope| match envelope.to {
                 Destination::One(to) => nodes.get(to..=to).unwrap_or_default(),
                 Destination::Everyone => nodes,
             });
+            if *answers {
+                mail.expect_answers();
+            }
             Some(mail)
         }
     }
@@ -512,12 +526,15 @@ mod tests {
             (ensemble.nodes().to_vec(), trace.entries().to_vec(), reports, traffic)
         }
 
-        let sorted = || Sorted { mesh: FullMesh::new(), nodes: Vec::new(), mail: Mail::new() };
-        for is_lonely in [false, true] {
-            let adder = |id: u64| Adder { sum: id, rounds: 0, is_lonely };
+        for (is_lonely, answers, fewest_jumps) in
+            [(false, false, 8), (true, false, 4), (false, true, 9)]
+        {
+            let sorted =
+                || Sorted { mesh: FullMesh::new(), nodes: Vec::new(), mail: Mail::new(), answers };
+            let adder = |id: u64| Adder { sum: id, rounds: 0, is_lonely, answers };
             let nodes: Vec<Adder> = (0..60).map(adder).collect();
             let in_turn = outcome(&nodes, FullMesh::new(), 1);
-            assert!(in_turn.1.len() >= if is_lonely { 4 } else { 8 });
+            assert!(in_turn.1.len() >= fewest_jumps);
             assert_eq!(outcome(&nodes, sorted(), 1), in_turn);
             assert_eq!(outcome(&nodes, sorted(), 3), in_turn);
         }

@@ -11,23 +11,26 @@ pub struct Mail<M> {
     places: Vec<u32>,
     /// Where those of each node end.
     ends: Vec<usize>,
+    /// Whether a node may say something when it hears one of them, and not only at its next tick.
+    may_be_answered: bool,
 }
 
 impl<M> Mail<M> {
     /// Nothing arrives.
     pub const fn new() -> Self {
-        Mail { sent: Vec::new(), places: Vec::new(), ends: Vec::new() }
+        Mail { sent: Vec::new(), places: Vec::new(), ends: Vec::new(), may_be_answered: false }
     }
 
     /// Replaces what it holds by these messages, sorted by receiver. `receivers_of` gives the nodes that hear a message,
-    /// numbered below `nodes`.
+    /// numbered below `nodes`. None of the messages is expected to be answered.
     pub fn sort<'a>(
         &mut self,
         messages: &mut Vec<Envelope<M>>,
         nodes: usize,
         receivers_of: impl Fn(&Envelope<M>) -> &'a [NodeId],
     ) {
-        let Mail { sent, places, ends } = self;
+        let Mail { sent, places, ends, may_be_answered } = self;
+        *may_be_answered = false;
         sent.clear();
         std::mem::swap(sent, messages);
         ends.clear();
@@ -48,6 +51,16 @@ impl<M> Mail<M> {
         }
     }
 
+    /// Nodes may answer what they hear before their next tick. They tick only after these answers have been heard.
+    pub const fn expect_answers(&mut self) {
+        self.may_be_answered = true;
+    }
+
+    /// Whether nodes may answer what they hear before their next tick.
+    pub const fn may_be_answered(&self) -> bool {
+        self.may_be_answered
+    }
+
     /// How many messages arrive, counted for each node that hears them.
     pub const fn len(&self) -> usize {
         self.places.len()
@@ -58,13 +71,13 @@ impl<M> Mail<M> {
         self.places.is_empty()
     }
 
-    /// What a node hears.
-    pub fn of(&self, to: NodeId) -> impl ExactSizeIterator<Item = Delivery<'_, M>> {
+    /// What a node hears, each message with its place among all that have been sent.
+    pub fn of(&self, to: NodeId) -> impl ExactSizeIterator<Item = (u32, Delivery<'_, M>)> {
         let end = |node: NodeId| self.ends.get(node).copied().unwrap_or(self.places.len());
         let begin = to.checked_sub(1).map_or(0, end);
         self.places[begin..end(to)].iter().map(move |&place| {
             let Envelope { from, message, .. } = &self.sent[place as usize];
-            Delivery { from: *from, to, message }
+            (place, Delivery { from: *from, to, message })
         })
     }
 }

@@ -45,9 +45,10 @@ pub trait Medium<M, B> {
         hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
     ) -> Result<(), E>;
 
-    /// In place of that, all that arrives now, for each node what it would hear in that order. A medium offers it only
-    /// where no node says anything, to other nodes or to observers, until its next tick. What it offers counts as
-    /// delivered.
+    /// In place of that, all that arrives now, for each node what it would hear in that order; none from a medium that
+    /// does not sort its messages. What it offers counts as delivered. A medium says so
+    /// ([`Mail::expect_answers`]) where a node may say something, to other nodes or to observers, before its next
+    /// tick.
     fn mail(&mut self) -> Option<&Mail<M>> {
         None
     }

@@ -43,6 +43,26 @@ impl<M, R> Outputs<M, R> {
         self
     }
 
+    /// How many messages and reports there are.
+    pub(super) const fn counts(&self) -> [usize; 2] {
+        [self.sent.len(), self.reports.len()]
+    }
+
+    /// Takes out all but so many messages and reports.
+    pub(super) fn split_off(&mut self, [sent, reports]: [usize; 2]) -> Self {
+        Outputs {
+            node: self.node,
+            sent: self.sent.split_off(sent),
+            reports: self.reports.split_off(reports),
+        }
+    }
+
+    /// Takes over what is left later.
+    pub(super) fn append(&mut self, mut later: Self) {
+        self.sent.append(&mut later.sent);
+        self.append_reports(&mut later);
+    }
+
     /// Takes over the reports that other nodes make after these.
     pub(super) fn append_reports(&mut self, later: &mut Self) {
         self.reports.append(&mut later.reports);
