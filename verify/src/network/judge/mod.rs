@@ -371,7 +371,7 @@ impl<'a> Judge<'a> {
         self.places.hold(&scene)?;
         self.conclusions.posts_stay(&scene)?;
         self.conclusions.moves_have_a_cause(&self.ledger, &scene)?;
-        self.places.update(&self.ledger, snapshot);
+        self.places.update(snapshot);
         Ok(())
     }
 

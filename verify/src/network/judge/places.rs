@@ -5,13 +5,13 @@ use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
-use super::ledger::Ledger;
 use super::{Dispute, Scene};
 use crate::network::limits::SLACK;
 use crate::network::property::Property;
 
 /// The place of each robot's post: the reference of a fixed post; for a redundant robot, where it
-/// was when it came to rest. Robots that move with a team have none.
+/// was when it came to rest. Robots that move with a team have none, nor has one that has just joined a team whose
+/// leader services the task in the same period.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     of_robots: Vec<Option<Point>>,
@@ -82,14 +82,13 @@ impl Places {
     }
 
     /// The places after the events of a period.
-    pub fn update(&mut self, ledger: &Ledger, snapshot: &Snapshot) {
+    pub fn update(&mut self, snapshot: &Snapshot) {
         for (robot, place) in self.of_robots.iter_mut().enumerate() {
-            let walks = snapshot.path.contains(&robot) && snapshot.roles[robot] != Role::Redundant;
             if let Some(post) = snapshot.posts.iter().find(|post| post.holder == robot) {
                 *place = Some(post.reference);
-            } else if walks || ledger.primary_team.contains(&robot) {
+            } else if snapshot.roles[robot] != Role::Redundant {
                 *place = None;
-            } else if place.is_none() && snapshot.roles[robot] == Role::Redundant {
+            } else if place.is_none() {
                 *place = Some(snapshot.positions[robot]);
             }
         }
