@@ -1,5 +1,4 @@
-//! Missions that failed once, found by random floor plans. Each file says what went wrong; all
-//! tasks of all of them are serviced, with every property monitored.
+//! Missions that failed once, found by random floor plans, with every property monitored. Each file says what went wrong.
 
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::{mission, scenario_file};

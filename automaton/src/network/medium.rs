@@ -23,7 +23,7 @@ pub struct Radio {
     audiences: Audiences,
     sent: Vec<Envelope<Message>>,
     /// Whether one of the messages sent may be answered at once.
-    expects_answer: bool,
+    may_be_answered: bool,
     mail: Mail<Message>,
     delivered: u64,
 }
@@ -38,7 +38,7 @@ impl Radio {
             bodies: Vec::new(),
             audiences: Audiences::default(),
             sent: Vec::new(),
-            expects_answer: false,
+            may_be_answered: false,
             mail: Mail::default(),
             delivered: 0,
         }
@@ -101,14 +101,14 @@ impl Medium<Message, Point> for Radio {
     }
 
     fn send(&mut self, envelope: Envelope<Message>) {
-        self.expects_answer |= envelope.message.may_be_answered_at_once();
+        self.may_be_answered |= envelope.message.may_be_answered_at_once();
         self.sent.push(envelope);
     }
 
     fn send_all(&mut self, envelopes: &mut Vec<Envelope<Message>>) {
         let may_be_answered =
             |envelope: &Envelope<Message>| envelope.message.may_be_answered_at_once();
-        self.expects_answer |= envelopes.iter().any(may_be_answered);
+        self.may_be_answered |= envelopes.iter().any(may_be_answered);
         match self.sent.is_empty() {
             true => std::mem::swap(&mut self.sent, envelopes),
             false => self.sent.append(envelopes),
@@ -125,8 +125,8 @@ impl Medium<Message, Point> for Radio {
         &mut self,
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Radio { audiences, sent, expects_answer, delivered, .. } = self;
-        *expects_answer = false;
+        let Radio { audiences, sent, may_be_answered, delivered, .. } = self;
+        *may_be_answered = false;
         sent.drain(..).try_for_each(|envelope| {
             let receivers = audiences.receivers_of(&envelope);
             *delivered += receivers.len() as u64;
@@ -136,11 +136,9 @@ impl Medium<Message, Point> for Radio {
     }
 
     fn mail(&mut self) -> Option<&Mail<Message>> {
-        let Radio { audiences, sent, expects_answer, mail, delivered, .. } = self;
-        mail.sort(sent, audiences.ends.len(), |envelope| audiences.receivers_of(envelope));
-        if std::mem::take(expects_answer) {
-            mail.expect_answers();
-        }
+        let Radio { audiences, sent, may_be_answered, mail, delivered, .. } = self;
+        let receivers_of = |envelope: &Envelope<Message>| audiences.receivers_of(envelope);
+        mail.sort(sent, audiences.ends.len(), receivers_of, std::mem::take(may_be_answered));
         *delivered += mail.len() as u64;
         Some(mail)
     }

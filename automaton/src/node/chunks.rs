@@ -16,7 +16,7 @@ pub(super) struct Chunks<N: Node> {
     pub slots: Vec<Slot>,
     /// How many threads may take steps.
     pub threads: usize,
-    /// What is left by the steps of each chunk; the first also has what single nodes leave, and all reports.
+    /// What is left by the steps of each chunk; the first also has what single nodes leave, all answers and all reports.
     outcomes: Vec<Outcome<N>>,
 }
 
@@ -42,6 +42,7 @@ pub(super) struct Steps<'a, M> {
 
 /// What the nodes of a chunk leave when they have taken their steps.
 struct Outcome<N: Node> {
+    /// What nodes say as they tick.
     outputs: Outputs<N::Message, N::Report>,
     /// What nodes have said on hearing messages, each with the place of the message among all that were sent.
     answers: Vec<(u32, Outputs<N::Message, N::Report>)>,
@@ -81,9 +82,10 @@ impl<N: Node> Chunks<N> {
         // Answers have the order of what they answer, and those to one message that of their senders.
         let mut answers: Vec<_> =
             outcomes.iter_mut().flat_map(|outcome| outcome.answers.drain(..)).collect();
+        debug_assert!(steps.round.is_none() || answers.is_empty(), "nobody was expected to answer");
         answers.sort_by_key(|&(place, _)| place);
         let [first, others @ ..] = &mut outcomes[..] else { return Ok(()) };
-        answers.into_iter().for_each(|(_, answer)| first.outputs.append(answer));
+        answers.iter_mut().for_each(|(_, answer)| first.outputs.append(answer));
         others.iter_mut().for_each(|other| first.outputs.append_reports(&mut other.outputs));
         outcomes.iter_mut().try_for_each(|outcome| std::mem::replace(&mut outcome.result, Ok(())))
     }
@@ -142,7 +144,7 @@ impl<N: Node> Chunks<N> {
         Ok(())
     }
 
-    /// Gives the medium what the nodes have sent, in their order.
+    /// Gives the medium what the nodes have sent: answers in the order of what they answer, all else in that of the nodes.
     pub fn send<B>(&mut self, medium: &mut impl Medium<N::Message, B>) {
         self.outcomes.iter_mut().for_each(|outcome| medium.send_all(outcome.outputs.sent_mut()));
     }
@@ -176,10 +178,12 @@ impl<M> Steps<'_, M> {
                 slot.hear(number, mail.len());
                 for (place, Delivery { from, message, .. }) in mail {
                     let before = outputs.counts();
-                    slot.step(node, Input::Heard { from, message }, outputs.now_of(id))?;
+                    let result =
+                        slot.step(node, Input::Heard { from, message }, outputs.now_of(id));
                     if outputs.counts() != before {
                         answers.push((place, outputs.split_off(before)));
                     }
+                    result?;
                 }
                 slot.ask(node);
             }

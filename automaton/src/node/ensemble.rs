@@ -499,13 +499,11 @@ mod tests {
                 Ok::<(), Infallible>(())
             });
             let Sorted { nodes, mail, answers, .. } = self;
-            mail.sort(&mut sent, nodes.len(), |envelope| match envelope.to {
+            let receivers_of = |envelope: &Envelope<u64>| match envelope.to {
                 Destination::One(to) => nodes.get(to..=to).unwrap_or_default(),
-                Destination::Everyone => nodes,
-            });
-            if *answers {
-                mail.expect_answers();
-            }
+                Destination::Everyone => &nodes[..],
+            };
+            mail.sort(&mut sent, nodes.len(), receivers_of, *answers);
             Some(mail)
         }
     }

@@ -22,15 +22,16 @@ impl<M> Mail<M> {
     }
 
     /// Replaces what it holds by these messages, sorted by receiver. `receivers_of` gives the nodes that hear a message,
-    /// numbered below `nodes`. None of the messages is expected to be answered.
+    /// numbered below `nodes`; whether nodes may answer any of them before their next tick is for the medium to say.
     pub fn sort<'a>(
         &mut self,
         messages: &mut Vec<Envelope<M>>,
         nodes: usize,
         receivers_of: impl Fn(&Envelope<M>) -> &'a [NodeId],
+        may_be_answered: bool,
     ) {
-        let Mail { sent, places, ends, may_be_answered } = self;
-        *may_be_answered = false;
+        self.may_be_answered = may_be_answered;
+        let Mail { sent, places, ends, .. } = self;
         sent.clear();
         std::mem::swap(sent, messages);
         ends.clear();
@@ -51,12 +52,8 @@ impl<M> Mail<M> {
         }
     }
 
-    /// Nodes may answer what they hear before their next tick. They tick only after these answers have been heard.
-    pub const fn expect_answers(&mut self) {
-        self.may_be_answered = true;
-    }
-
-    /// Whether nodes may answer what they hear before their next tick.
+    /// Whether nodes may answer what they hear before their next tick. If so, they tick only after these answers have
+    /// been heard.
     pub const fn may_be_answered(&self) -> bool {
         self.may_be_answered
     }

@@ -45,10 +45,9 @@ pub trait Medium<M, B> {
         hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
     ) -> Result<(), E>;
 
-    /// In place of that, all that arrives now, for each node what it would hear in that order; none from a medium that
-    /// does not sort its messages. What it offers counts as delivered. A medium says so
-    /// ([`Mail::expect_answers`]) where a node may say something, to other nodes or to observers, before its next
-    /// tick.
+    /// In place of that, all that arrives now, for each node what it would hear in that order; `None` from a medium that
+    /// does not sort its messages. What it offers counts as delivered. Where a node may say something before its next
+    /// tick, to other nodes or to observers, the mail [says so](Mail::may_be_answered).
     fn mail(&mut self) -> Option<&Mail<M>> {
         None
     }

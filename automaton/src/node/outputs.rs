@@ -57,10 +57,10 @@ impl<M, R> Outputs<M, R> {
         }
     }
 
-    /// Takes over what is left later.
-    pub(super) fn append(&mut self, mut later: Self) {
+    /// Appends what is said later.
+    pub(super) fn append(&mut self, later: &mut Self) {
         self.sent.append(&mut later.sent);
-        self.append_reports(&mut later);
+        self.append_reports(later);
     }
 
     /// Takes over the reports that other nodes make after these.

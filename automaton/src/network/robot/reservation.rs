@@ -24,11 +24,11 @@
 //! holds in every control period t up to the last for which the robot has granted anything. A robot with c_i < 0 grants
 //! no more, and renews what it has granted for as long as its flows last.
 //!
-//! Where packets go round in a circle, each grant waits for the next one to be renewed. So a robot also grants parts for
-//! longer, of what its other flows carry. Requests tell whose packets a robot sends: who sends none of its own comes
-//! first, and of what A and B send to each other F_AB − F_BA counts. When the leases end, what has gone round in the
-//! circle is gone, and the rest is left. And no flow is raised that would close a circle: to a robot whose packets this
-//! one sends.
+//! Where packets go round in a circle, each grant waits for the next one to be renewed. Requests tell whose packets a
+//! robot sends, and no robot raises a flow to one whose packets it sends, as far as it has heard; several flows that are
+//! raised at once can still close a circle. So a robot also grants parts for longer, of what its other flows carry: first
+//! to those who send none of its packets back to it, and of what A and B send to each other, F_AB − F_BA. When the leases
+//! end, these parts are left.
 
 use std::sync::Arc;
 
@@ -309,13 +309,13 @@ impl Robot {
         self.settle_flows(outputs);
     }
 
-    /// The robots whose packets it sends: it and those whose packets the robots that send to it send.
+    /// Works out whose packets it sends: its own, and those that its senders have told. In a circle robots are
+    /// told on that have left it, until the circle is gone.
     fn note_origins(&mut self) {
         let mut origins = IdSet::singleton(self.id);
-        let senders = self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0);
-        senders.for_each(|kept| {
+        for kept in self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0) {
             origins.merge(&kept.origins);
-        });
+        }
         renew(&mut self.origins, origins);
     }
 
@@ -385,21 +385,21 @@ impl Robot {
         // What was granted before is void, beyond what is in use.
         held.lease.limit(held.flow);
         (held.asked, held.is_open) = (self.last_request, true);
-        let HeldFlow { to, asked: number, flow: held, wanted, .. } = *held;
+        let HeldFlow { to, asked: number, flow, wanted, .. } = *held;
         let origins = Arc::clone(&self.origins);
-        outputs.send(to, Message::AskFlow(FlowRequest { number, held, wanted, origins }));
+        outputs.send(to, Message::AskFlow(FlowRequest { number, held: flow, wanted, origins }));
     }
 
     /// A sender asks for a flow.
     pub(super) fn hear_request(&mut self, from: NodeId, request: &FlowRequest) {
-        let FlowRequest { number, held, wanted, ref origins } = *request;
+        let FlowRequest { number, held, wanted, .. } = *request;
         let known = self.reservations.binary_search_by_key(&from, |kept| kept.from);
         if known.is_ok_and(|at| number <= self.reservations[at].asked) {
             return;
         }
         let mut lease = known.map_or(Lease::of(0.0, self.period), |at| self.reservations[at].lease);
         lease.limit(held.max(0.0));
-        let origins = Arc::clone(origins);
+        let origins = Arc::clone(&request.origins);
         let kept = Reservation { from, lease, wanted, asked: number, is_answered: false, origins };
         match known {
             Ok(at) => self.reservations[at] = kept,
@@ -484,13 +484,11 @@ impl Robot {
             self.reservations.iter().map(|kept| (kept.wanted - kept.lease.flow()).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.last_to_grant());
-        let (longer, parts) = self.parts_for_longer(until).unwrap_or_default();
-        let mut parts = parts.into_iter();
+        let longer = self.parts_for_longer(until);
         let mut spare = Spare::of(self.lasting_outflow(until) - needed);
         let may_grant = self.round_count.is_for_grants();
-        for kept in &mut self.reservations {
+        for (at, kept) in self.reservations.iter_mut().enumerate() {
             let (before, lease) = (kept.lease.flow(), &mut kept.lease);
-            let part = parts.next().unwrap_or_default();
             let flow = spare.most(before, kept.wanted);
             let can_grant = flow > before + SAME_FLOW && may_grant && lease.promise(flow, until);
             if can_grant {
@@ -498,8 +496,10 @@ impl Robot {
             }
             if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
                 lease.promise(before, until);
-                if part > lease.lasting(longer) {
-                    lease.promise(part, longer);
+                if let Some((longer, parts)) = &longer
+                    && parts[at] > 0.0
+                {
+                    lease.promise(parts[at], *longer);
                 }
                 let grant = FlowGrant::of(kept.asked, lease);
                 outputs.send(kept.from, Message::GrantFlow(grant));
@@ -513,40 +513,46 @@ impl Robot {
     }
 
     /// The [parts](Self::parts) of what it has granted that its flows carry for longer than until the period up to which
-    /// they carry all of it, and until when: those with which most packets flow after that period.
+    /// they carry all of it, and until when: those with which most packets flow that are not promised yet.
     fn parts_for_longer(&self, until: u32) -> Option<(u32, Vec<f64>)> {
         let ends = self.ends_of_flows().map(|end| end.min(self.last_to_grant()));
-        let longer = ends.filter(|&end| end > until).map(|end| (end, self.parts(until, end)));
-        let packets =
-            |(end, parts): &(u32, Vec<f64>)| f64::from(end - until) * parts.iter().sum::<f64>();
+        let longer = ends.filter(|&end| end > until);
+        let longer = longer.filter_map(|end| Some((end, self.parts(until, end)?)));
+        let packets = |(end, parts): &(u32, Vec<f64>)| {
+            let promised = self.reservations.iter().map(|kept| kept.lease.lasting(*end));
+            f64::from(end - until) * (parts.iter().sum::<f64>() - promised.sum::<f64>())
+        };
         longer.max_by(|one, other| packets(one).total_cmp(&packets(other)))
     }
 
-    /// The part of each grant that its own flows carry from after one control period up to another one. First come those
-    /// who send none of its own packets, then the rest: what goes round in a circle ends with its lease, and nothing else
-    /// with it. What it sends back to a sender counts for none.
-    fn parts(&self, after: u32, end: u32) -> Vec<f64> {
-        let promised = |kept: &Reservation| kept.lease.lasting(after + 1);
-        let missing = |kept: &Reservation| {
-            let sent_back = self.flow_to(kept.from).map_or(0.0, |held| held.flow);
-            (kept.lease.flow() - sent_back - promised(kept)).max(0.0)
-        };
+    /// The part of each grant that its own flows carry from after one control period up to another one, if they carry
+    /// what it has promised. What is left goes first to those who send none of this robot's packets back to it, then to
+    /// the rest: what goes round in a circle ends with its lease. Of what two robots send to each other the difference
+    /// counts.
+    fn parts(&self, after: u32, end: u32) -> Option<Vec<f64>> {
         let kept = || self.reservations.iter();
-        let mut parts: Vec<f64> = kept().map(|kept| kept.lease.lasting(end)).collect();
-        let mut spare = self.lasting_outflow(end) - self.rate - kept().map(promised).sum::<f64>();
-        for goes_round in [false, true] {
-            if spare < -SAME_FLOW {
-                break;
-            }
-            let counts = |kept: &Reservation| kept.origins.contains(self.id) == goes_round;
-            let all = kept().filter(|kept| counts(kept)).map(missing).sum::<f64>();
-            let share = if all > spare { spare.max(0.0) / all } else { 1.0 };
-            for (kept, part) in kept().zip(&mut parts).filter(|(kept, _)| counts(kept)) {
-                *part = promised(kept) + share * missing(kept);
-            }
-            spare -= all;
+        let mut parts: Vec<f64> = kept().map(|kept| kept.lease.lasting(after + 1)).collect();
+        let spare = self.lasting_outflow(end) - self.rate - parts.iter().sum::<f64>();
+        if spare < -SAME_FLOW {
+            return None;
         }
-        parts
+        let mut spare = spare.max(0.0);
+        for goes_round in [false, true] {
+            let most = |kept: &Reservation, part: f64| {
+                let sent_back = self.flow_to(kept.from).map_or(0.0, |held| held.flow);
+                (kept.lease.flow() - sent_back).max(part)
+            };
+            let is_served = |kept: &Reservation| kept.origins.contains(self.id) == goes_round;
+            let served = kept().zip(&parts).filter(|(kept, _)| is_served(kept));
+            let missing = served.map(|(kept, &part)| most(kept, part) - part).sum::<f64>();
+            for (kept, part) in kept().zip(&mut parts).filter(|(kept, _)| is_served(kept)) {
+                let most = most(kept, *part);
+                *part =
+                    if missing <= spare { most } else { *part + spare / missing * (most - *part) };
+            }
+            spare = (spare - missing).max(0.0);
+        }
+        Some(parts)
     }
 
     /// Control periods for which it grants flows that last as long. A robot farther from the access points

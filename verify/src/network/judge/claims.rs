@@ -150,8 +150,8 @@ fn serves_from(post: &PostView, robot: usize, place: Point, settings: &Settings)
     settings.strategy == Strategy::Eager && post.holder == robot && is_within
 }
 
-/// No member has got anywhere in the periods that end here, or ended when what it told last has reached the other end of
-/// the team: what members tell passes from one to the next in each round.
+/// No member has got anywhere as far as the first one knows, which reports it: in the periods that end here, or ended when
+/// the others told what it knows of them. It may report in the first round of a period; news pass one member in each.
 fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
     if scene.recent.is_empty() {
         return Ok(());
@@ -159,15 +159,14 @@ fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
     let settings = scene.limits.settings();
     let bound = (STILL * settings.planning_clearance().min(settings.step_radius))
         .max(settings.errors.stray());
-    let delay = team.len().saturating_sub(1) / settings.rounds_per_period;
-    let places: Vec<&[Point]> = scene.recent.iter().map(Vec::as_slice).collect();
-    let now = [&scene.snapshot.positions[..]];
-    let places = [&places[..], &now].concat();
-    for &robot in team {
-        let moves = (0..=delay).filter_map(|periods| {
-            let (now, before) = places[..places.len().saturating_sub(periods)].split_last()?;
-            before.iter().map(|place| (now[robot] - place[robot]).norm()).reduce(f64::min)
-        });
+    let now = &scene.snapshot.positions[..];
+    let places: Vec<&[Point]> = scene.recent.iter().map(Vec::as_slice).chain([now]).collect();
+    for (place_in_team, &robot) in team.iter().enumerate() {
+        let moves =
+            (0..=place_in_team.div_ceil(settings.rounds_per_period)).filter_map(|periods| {
+                let (now, before) = places[..places.len().saturating_sub(periods)].split_last()?;
+                before.iter().map(|place| (now[robot] - place[robot]).norm()).reduce(f64::min)
+            });
         let moved = moves.fold(f64::INFINITY, f64::min);
         at_most(moved, bound, &[robot], || {
             format!("the team {team:?} is reported stationary, and robot {robot} moves {moved:.6}")

@@ -10,8 +10,7 @@ use crate::network::limits::SLACK;
 use crate::network::property::Property;
 
 /// The place of each robot's post: the reference of a fixed post; for a redundant robot, where it
-/// was when it came to rest. Robots that move with a team have none, nor has one that has just joined a team whose
-/// leader services the task in the same period.
+/// was when it came to rest. Others have none: those that move with a team, along Σ, or on from there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     of_robots: Vec<Option<Point>>,
