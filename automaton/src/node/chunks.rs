@@ -40,12 +40,15 @@ pub(super) struct Steps<'a, M> {
     pub round: Option<usize>,
 }
 
+/// What nodes of this kind say.
+type Said<N> = Outputs<<N as Node>::Message, <N as Node>::Report>;
+
 /// What the nodes of a chunk leave when they have taken their steps.
 struct Outcome<N: Node> {
     /// What nodes say as they tick.
-    outputs: Outputs<N::Message, N::Report>,
+    outputs: Said<N>,
     /// What nodes have said on hearing messages, each with the place of the message among all that were sent.
-    answers: Vec<(u32, Outputs<N::Message, N::Report>)>,
+    answers: Vec<(u32, Said<N>)>,
     result: Result<(), N::Error>,
 }
 
