@@ -258,13 +258,13 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
     assert_eq!(until(NOW + 5, Some((0.2, NOW + 3))), (0.2, NOW + 5));
 }
 
+/// A flow, for how many periods it is granted, and the same of the part for longer.
+type Told = (f64, u32, Option<(f64, u32)>);
+
 /// What the router grants robot 4, which sends it 0.05, and robot 5, which sends it 0.15 and gets 0.1 back for three
 /// periods; its rate is 0.1, and what it sends to the access point lasts. Of each grant how much, for how long, and the part
 /// for longer.
-fn granted_beside(
-    to_access_point: f64,
-    origins_of_5: &[usize],
-) -> [(f64, u32, Option<(f64, u32)>); 2] {
+fn granted_beside(to_access_point: f64, origins_of_5: &[usize]) -> [Told; 2] {
     let (mut robot, _) = granted(to_access_point - 0.1);
     let mut outputs = NodeOutputs::of(0);
     let back = &mut robot.links[0];
