@@ -469,7 +469,7 @@ fn an_access_point_that_stops_is_replaced_by_another_or_named() {
 #[test]
 fn the_mission_goes_on_without_a_robot_that_stops() {
     let mut blocked = Vec::new();
-    for (name, seeds) in [("corridor", 0..8), ("study-2", 0..2)] {
+    for (name, seeds) in [("corridor", 0..4), ("study-2", 0..2)] {
         for seed in seeds {
             let verdict = storm_for(1_500, name, Kind::Crash, seed);
             assert!(verdict.violations.is_empty(), "{name} {seed}: {}", verdict.violations[0]);
@@ -479,7 +479,7 @@ fn the_mission_goes_on_without_a_robot_that_stops() {
             }
         }
     }
-    assert!(blocked.len() < 4, "{blocked:?}");
+    assert!(blocked.len() < 2, "{blocked:?}");
     assert!(
         blocked
             .iter()

@@ -41,13 +41,13 @@ fn calls_ahead(mission: &Mission) -> usize {
 }
 
 #[test]
-fn the_studies_take_four_fifths_of_the_time_and_no_more_robots() {
+fn the_studies_take_three_quarters_of_the_time_and_no_more_robots() {
     for name in ["study-1", "study-2", "corridor"] {
         let [paper, eager] = both(&shipped(name));
         paper.assert_serviced();
         eager.assert_serviced();
         let periods = [&paper, &eager].map(|mission| mission.periods.len() as f64);
-        assert!(periods[1] < 0.8 * periods[0], "{name}: {periods:?}");
+        assert!(periods[1] < 0.75 * periods[0], "{name}: {periods:?}");
         assert!(robots_used(&eager) <= robots_used(&paper), "{name}");
         assert!(calls_ahead(&eager) > 0 && moves_on_its_own(&eager) > 0, "{name}");
         let is_ordered = (calls_ahead(&paper), moves_on_its_own(&paper)) == (0, 0);

@@ -8,6 +8,11 @@ pub const REASONS: &[(&str, &str)] = &[
          else depends on so little",
     ),
     ("phase: it is that of the period before", "observers may hear of a step of the mission late"),
+    ("phase: it is the next one", "robots may be on Σ before the event that tells of its path"),
+    (
+        "task: none is pursued",
+        "it has been announced a few periods before, and observers may hear of it late",
+    ),
     (
         "active team: it is emptied",
         "the team has become the active one a few periods before, and observers may hear of it late",
@@ -22,6 +27,10 @@ pub const REASONS: &[(&str, &str)] = &[
     (
         "tree: the edge of a redundant robot is dropped",
         "a redundant robot to which no other is attached may be without a parent",
+    ),
+    (
+        "posts: one is dropped",
+        "its holder has been of the primary team a few periods before, whose posts change when it is set up or dissolved",
     ),
     ("posts: one is a junction", BRANCHES),
     ("posts: a junction is none", BRANCHES),

@@ -50,9 +50,7 @@ impl Bounds {
                 is_period(*period) && witness.is_none_or(|it| self.has_node(it))
             }
             Message::Objection { period } | Message::Consent { period } => is_period(*period),
-            Message::AskFlow(request) => {
-                is_period(request.number.period) && self.has_robots(&request.origins)
-            }
+            Message::AskFlow(request) => is_period(request.number.period),
             Message::GrantFlow(grant) => {
                 let FlowGrant { number, until, part, .. } = grant;
                 is_period(number.period)

@@ -161,7 +161,6 @@ fn messages() -> Vec<Message> {
         Errand { position: Point::new(1.6, 0.52), lasts: Some(90), withdrawn: false },
     ];
     let part = GrantedPart { flow: 0.025, until: 15 };
-    let origins = Arc::new([2, 3].into_iter().collect::<IdSet>());
     let mut messages = vec![
         beacon(silent()),
         Message::Multiplier { report, parent: None },
@@ -169,7 +168,7 @@ fn messages() -> Vec<Message> {
         Message::Flow(0.075),
         Message::Demand(f64::MIN_POSITIVE),
         Message::Shortage,
-        Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075, origins }),
+        Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
         Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12, part: None }),
         Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12, part: Some(part) }),
         Message::Proposal { period: 5, segment, witness: Some(2) },
@@ -352,13 +351,7 @@ fn messages_that_no_node_can_have_sent_are_impossible() {
         told(7, 10, None),
         told(7, 7, Some(10)),
         Message::Objection { period: u32::MAX },
-        Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.1, origins: set(0) }),
-        Message::AskFlow(FlowRequest {
-            number: RequestNumber { period: 7, number: 1 },
-            held: 0.0,
-            wanted: 0.1,
-            origins: set(nobody),
-        }),
+        Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.1 }),
         Message::News(Bulletin::first(Shared::new(Notice::Serviced { task: usize::MAX }))),
         Message::News(Bulletin::first(Shared::new(Notice::Call {
             caller: nobody,

@@ -310,7 +310,6 @@ impl Robot {
             demands: _,
             residual: _,
             reservations: _,
-            origins: _,
             last_request: _,
             has_flow_news: _,
             has_swept: _,

@@ -175,8 +175,6 @@ pub struct Robot {
     /// Its flows in use, and those that it has asked for.
     flows: Vec<HeldFlow>,
     reservations: Vec<Reservation>,
-    /// The robots whose packets are among those that it sends.
-    origins: Arc<IdSet>,
     last_request: RequestNumber,
 
     // Where robots were that it does not hear any more or has only heard of, those that do not take part,
@@ -374,7 +372,6 @@ impl Robot {
             demands: Vec::new(),
             residual: 0.0,
             reservations: Vec::new(),
-            origins: Arc::new(IdSet::singleton(id)),
             last_request: RequestNumber::default(),
             has_flow_news: false,
             has_swept: false,

@@ -24,22 +24,16 @@
 //! holds in every control period t up to the last for which the robot has granted anything. A robot with c_i < 0 grants
 //! no more, and renews what it has granted for as long as its flows last.
 //!
-//! Where packets go round in a circle, each grant waits for the next one to be renewed. Requests tell whose packets a
-//! robot sends, and no robot raises a flow to one whose packets it sends, as far as it has heard; several flows that are
-//! raised at once can still close a circle. So a robot also grants parts for longer, of what its other flows carry: first
-//! to those who send none of its packets back to it, and of what A and B send to each other, F_AB − F_BA. When the leases
-//! end, these parts are left.
+//! Where A and B send to each other, each grant waits for the other one to be renewed. So B also grants a part for
+//! longer: F_AB − F_BA, if its flows to others carry that. When the leases end, the difference is left. In a circle of
+//! three or more robots the flows still end with their leases.
 
-use std::sync::Arc;
-
+use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Lease, Spare};
-use pleach_discrete::network::{IdSet, NodeId};
 use serde::{Deserialize, Serialize};
 
 use super::super::member::NodeOutputs;
 use super::super::message::Message;
-use super::super::shared::renew;
-use super::super::wire;
 use super::Robot;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
 
@@ -68,7 +62,7 @@ pub struct RequestNumber {
 }
 
 /// A request for a flow.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FlowRequest {
     /// Its number.
@@ -77,9 +71,6 @@ pub struct FlowRequest {
     pub held: f64,
     /// F_ij as the sender plans it.
     pub wanted: f64,
-    /// The robots whose packets are among those that the sender sends, as far as it has heard.
-    #[serde(with = "wire")]
-    pub origins: Arc<IdSet>,
 }
 
 /// An answer to a request for a flow: all that the receiver of the flow keeps for its sender. Of grants that answer the
@@ -130,7 +121,7 @@ pub(super) struct HeldFlow {
 }
 
 /// What a receiver keeps for a sender.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reservation {
     from: NodeId,
     /// The largest F_ij that the sender may use, and until when.
@@ -139,8 +130,6 @@ pub(super) struct Reservation {
     /// The number of the last request, and whether it has been answered.
     asked: RequestNumber,
     is_answered: bool,
-    /// The robots whose packets are among those that the sender sends.
-    origins: Arc<IdSet>,
 }
 
 impl FlowGrant {
@@ -272,6 +261,14 @@ fn ends(lease: &Lease<f64>) -> [u32; 2] {
     [lease.until(), lease.end()]
 }
 
+/// The part of a grant that does not depend on what is sent back to the robot that it is given to; no less than has been
+/// promised already for longer than all of it.
+fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow]) -> f64 {
+    let sent_back = place_of(flows, from).map_or(0.0, |at| flows[at].flow);
+    let promised = lease.part().map_or(0.0, |(part, _)| part);
+    (lease.flow() - sent_back).max(promised)
+}
+
 impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
     pub(super) fn ask_for_flows(&mut self, outputs: &mut NodeOutputs) {
@@ -280,7 +277,6 @@ impl Robot {
         let knows_load = self.knows_load();
         self.reservations.iter_mut().for_each(|kept| kept.pass(period));
         self.reservations.retain(|kept| kept.lease.until() >= period);
-        self.note_origins();
         for at in 0..self.links.len() {
             let RouteLink { to, reliability, is_retiring, .. } = self.links[at];
             // Where flows are not reported, the plan can be none.
@@ -288,10 +284,7 @@ impl Robot {
             if planned == 0.0 && self.flow_to(to).is_none() {
                 continue;
             }
-            let can_raise = planned != 0.0
-                && knows_load
-                && self.knows_place_of(to)
-                && !self.origins.contains(to);
+            let can_raise = planned != 0.0 && knows_load && self.knows_place_of(to);
             let heard_in =
                 (to >= robots).then(|| self.neighbour(to).map_or(0, |known| known.heard_in));
             let held = self.held_flow(to);
@@ -307,16 +300,6 @@ impl Robot {
             held.is_due = to < robots && (held.is_in_use() || held.is_open);
         }
         self.settle_flows(outputs);
-    }
-
-    /// Works out whose packets it sends: its own, and those that its senders have told. In a circle robots are
-    /// told on that have left it, until the circle is gone.
-    fn note_origins(&mut self) {
-        let mut origins = IdSet::singleton(self.id);
-        for kept in self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0) {
-            origins.merge(&kept.origins);
-        }
-        renew(&mut self.origins, origins);
     }
 
     /// Whether the loads of its links are known, as it knows where all are to which packets flow. Where it
@@ -386,21 +369,19 @@ impl Robot {
         held.lease.limit(held.flow);
         (held.asked, held.is_open) = (self.last_request, true);
         let HeldFlow { to, asked: number, flow, wanted, .. } = *held;
-        let origins = Arc::clone(&self.origins);
-        outputs.send(to, Message::AskFlow(FlowRequest { number, held: flow, wanted, origins }));
+        outputs.send(to, Message::AskFlow(FlowRequest { number, held: flow, wanted }));
     }
 
     /// A sender asks for a flow.
-    pub(super) fn hear_request(&mut self, from: NodeId, request: &FlowRequest) {
-        let FlowRequest { number, held, wanted, .. } = *request;
+    pub(super) fn hear_request(&mut self, from: NodeId, request: FlowRequest) {
+        let FlowRequest { number, held, wanted } = request;
         let known = self.reservations.binary_search_by_key(&from, |kept| kept.from);
         if known.is_ok_and(|at| number <= self.reservations[at].asked) {
             return;
         }
         let mut lease = known.map_or(Lease::of(0.0, self.period), |at| self.reservations[at].lease);
         lease.limit(held.max(0.0));
-        let origins = Arc::clone(&request.origins);
-        let kept = Reservation { from, lease, wanted, asked: number, is_answered: false, origins };
+        let kept = Reservation { from, lease, wanted, asked: number, is_answered: false };
         match known {
             Ok(at) => self.reservations[at] = kept,
             Err(at) => self.reservations.insert(at, kept),
@@ -477,18 +458,20 @@ impl Robot {
     }
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
-    /// granted for as long as these last; [parts](Self::parts) for as long as some of them last.
+    /// granted for as long as these last; [a part](part_for_longer) for longer where it sends some of it back.
     fn grant_flows(&mut self, outputs: &mut NodeOutputs) {
         let needed = self.needed_outflow();
         let wanted =
             self.reservations.iter().map(|kept| (kept.wanted - kept.lease.flow()).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.last_to_grant());
-        let longer = self.parts_for_longer(until);
+        let longer = self.parts_last_until(until);
         let mut spare = Spare::of(self.lasting_outflow(until) - needed);
         let may_grant = self.round_count.is_for_grants();
-        for (at, kept) in self.reservations.iter_mut().enumerate() {
+        for kept in &mut self.reservations {
             let (before, lease) = (kept.lease.flow(), &mut kept.lease);
+            let part =
+                longer.map(|longer| (part_for_longer(lease, kept.from, &self.flows), longer));
             let flow = spare.most(before, kept.wanted);
             let can_grant = flow > before + SAME_FLOW && may_grant && lease.promise(flow, until);
             if can_grant {
@@ -496,10 +479,8 @@ impl Robot {
             }
             if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
                 lease.promise(before, until);
-                if let Some((longer, parts)) = &longer
-                    && parts[at] > 0.0
-                {
-                    lease.promise(parts[at], *longer);
+                if let Some((flow, longer)) = part {
+                    lease.promise(flow, longer);
                 }
                 let grant = FlowGrant::of(kept.asked, lease);
                 outputs.send(kept.from, Message::GrantFlow(grant));
@@ -512,47 +493,26 @@ impl Robot {
         self.period.saturating_add(self.lease())
     }
 
-    /// The [parts](Self::parts) of what it has granted that its flows carry for longer than until the period up to which
-    /// they carry all of it, and until when: those with which most packets flow that are not promised yet.
-    fn parts_for_longer(&self, until: u32) -> Option<(u32, Vec<f64>)> {
-        let ends = self.ends_of_flows().map(|end| end.min(self.last_to_grant()));
-        let longer = ends.filter(|&end| end > until);
-        let longer = longer.filter_map(|end| Some((end, self.parts(until, end)?)));
-        let packets = |(end, parts): &(u32, Vec<f64>)| {
-            let promised = self.reservations.iter().map(|kept| kept.lease.lasting(*end));
-            f64::from(end - until) * (parts.iter().sum::<f64>() - promised.sum::<f64>())
-        };
-        longer.max_by(|one, other| packets(one).total_cmp(&packets(other)))
-    }
-
-    /// The part of each grant that its own flows carry from after one control period up to another one, if they carry
-    /// what it has promised. What is left goes first to those who send none of this robot's packets back to it, then to
-    /// the rest: what goes round in a circle ends with its lease. Of what two robots send to each other the difference
-    /// counts.
-    fn parts(&self, after: u32, end: u32) -> Option<Vec<f64>> {
-        let kept = || self.reservations.iter();
-        let mut parts: Vec<f64> = kept().map(|kept| kept.lease.lasting(after + 1)).collect();
-        let spare = self.lasting_outflow(end) - self.rate - parts.iter().sum::<f64>();
-        if spare < -SAME_FLOW {
+    /// Until when its flows carry [parts](part_for_longer) of what it has granted, where that is longer than until the
+    /// period up to which they carry all of it.
+    fn parts_last_until(&self, until: u32) -> Option<u32> {
+        if !self.senders().any(|sender| self.sends_to(sender)) {
             return None;
         }
-        let mut spare = spare.max(0.0);
-        for goes_round in [false, true] {
-            let most = |kept: &Reservation, part: f64| {
-                let sent_back = self.flow_to(kept.from).map_or(0.0, |held| held.flow);
-                (kept.lease.flow() - sent_back).max(part)
-            };
-            let is_served = |kept: &Reservation| kept.origins.contains(self.id) == goes_round;
-            let served = kept().zip(&parts).filter(|(kept, _)| is_served(kept));
-            let missing = served.map(|(kept, &part)| most(kept, part) - part).sum::<f64>();
-            for (kept, part) in kept().zip(&mut parts).filter(|(kept, _)| is_served(kept)) {
-                let most = most(kept, *part);
-                *part =
-                    if missing <= spare { most } else { *part + spare / missing * (most - *part) };
-            }
-            spare = (spare - missing).max(0.0);
-        }
-        Some(parts)
+        let part = |kept: &Reservation, period| match kept.lease {
+            lease if period <= lease.until() => lease.flow(),
+            lease => part_for_longer(&lease, kept.from, &self.flows),
+        };
+        let is_carried = |period: u32| {
+            let parts = self.reservations.iter().map(|kept| part(kept, period)).sum::<f64>();
+            self.lasting_outflow(period) >= self.rate + parts - SAME_FLOW
+        };
+        let promised = self.ends_of_promises().filter(|&end| end > until);
+        let short = promised.filter(|&end| !is_carried(end)).min();
+        let ends = self.ends_of_flows().map(|end| end.min(self.last_to_grant()));
+        let carries =
+            |&end: &u32| end > until && short.is_none_or(|it| end < it) && is_carried(end);
+        ends.filter(carries).max()
     }
 
     /// Control periods for which it grants flows that last as long. A robot farther from the access points

@@ -218,7 +218,7 @@ impl Robot {
     #[inline(never)]
     fn hear_of_flows_or_moves(&mut self, from: NodeId, message: &Message) {
         match message {
-            Message::AskFlow(request) => self.hear_request(from, request),
+            Message::AskFlow(request) => self.hear_request(from, *request),
             Message::GrantFlow(grant) => self.hear_grant(from, *grant),
             Message::Proposal { period, .. }
             | Message::Objection { period }

@@ -133,7 +133,7 @@ impl Link {
             }
             Step::SenderSettles => sender.take_in_requests(&mut asked),
             Step::ReceiverSettles => receiver.take_in_requests(&mut granted),
-            Step::HearAsk(at) => receiver.hear_request(OTHER, &asks[at]),
+            Step::HearAsk(at) => receiver.hear_request(OTHER, asks[at]),
             Step::HearGrant(at) => sender.hear_grant(OTHER, given[at]),
             Step::Pass(periods) => {
                 for (robot, outputs) in [(sender, &mut asked), (receiver, &mut granted)] {
@@ -250,7 +250,7 @@ fn is_step(link: &Link, step: Step, next: &Link) -> bool {
         }
         Step::SendBack(_) => rests == (true, true),
         Step::HearAsk(at) => {
-            let ask = &link.asks[at];
+            let ask = link.asks[at];
             let is_known = link.receiver.reservations.iter().any(|kept| kept.from == OTHER);
             let is_new = !is_known || ask.number > before.known;
             let limit = if is_new { ask.held } else { f64::INFINITY };

@@ -1,7 +1,5 @@
 //! Which flows a robot plans, asks for, grants and uses (reservation), and how it routes.
 
-use std::sync::Arc;
-
 use pleach_continuous::network::LinkReliability as _;
 use pleach_discrete::network::reservation::Lease;
 
@@ -45,19 +43,13 @@ pub(in super::super) fn grants(outputs: &mut NodeOutputs) -> Vec<(Destination, F
     sent(outputs).into_iter().filter_map(grants).collect()
 }
 
-/// A request of this period by a robot that passes on nobody's packets.
-fn request(number: u32, held: f64, wanted: f64) -> FlowRequest {
-    let number = RequestNumber { period: NOW, number };
-    FlowRequest { number, held, wanted, origins: Arc::default() }
-}
-
 /// The router asks robot 5 for a flow of 0.2 R.
 fn asking() -> (Robot, FlowRequest) {
     let mut robot = router();
     let mut outputs = NodeOutputs::of(0);
     robot.links[0].share = 0.2;
     robot.ask_for_flows(&mut outputs);
-    let (_, request) = requests(&mut outputs).swap_remove(0);
+    let request = requests(&mut outputs).first().expect("it asks").1;
     (robot, request)
 }
 
@@ -94,7 +86,7 @@ fn a_flow_is_raised_to_what_is_planned_and_granted() {
         robot.links[1].share = busy;
         robot.ask_for_flows(&mut outputs);
         let asked = requests(&mut outputs);
-        let [(Destination::One(5), request)] = &asked[..] else { panic!("{asked:?}") };
+        let [(Destination::One(5), request)] = asked[..] else { panic!("{asked:?}") };
         robot.hear_grant(
             5,
             FlowGrant { number: request.number, flow: granted, until: NOW + LEASE, part: None },
@@ -150,7 +142,8 @@ fn granted(spare: f64) -> (Robot, Vec<(Destination, FlowGrant)>) {
     robot.links[1].share = (0.1 + spare) / reliability;
     robot.ask_for_flows(&mut outputs);
     sent(&mut outputs);
-    robot.hear_request(5, &request(1, 0.0, 0.2));
+    let number = RequestNumber { period: NOW, number: 1 };
+    robot.hear_request(5, FlowRequest { number, held: 0.0, wanted: 0.2 });
     robot.take_in_requests(&mut outputs);
     let grants = grants(&mut outputs);
     (robot, grants)
@@ -197,11 +190,16 @@ fn a_request_is_answered_once_and_an_older_one_never() {
         robot.take_in_requests(&mut outputs);
     }
     assert!(grants(&mut outputs).is_empty(), "nothing has changed");
-    robot.hear_request(5, &request(1, 0.0, 0.0));
+    let request = |number, held, wanted| FlowRequest {
+        number: RequestNumber { period: NOW, number },
+        held,
+        wanted,
+    };
+    robot.hear_request(5, request(1, 0.0, 0.0));
     robot.take_in_requests(&mut outputs);
     assert!(grants(&mut outputs).is_empty(), "it is the same again");
     // A new request voids the grant but for what is in use.
-    robot.hear_request(5, &request(2, 0.05, 0.05));
+    robot.hear_request(5, request(2, 0.05, 0.05));
     robot.take_in_requests(&mut outputs);
     let answered = grants(&mut outputs);
     assert!(
@@ -243,7 +241,8 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
             Some((flow, until)) => robot.reservations[0].lease = Lease::of(flow, until),
             None => robot.reservations.clear(),
         }
-        robot.hear_request(5, &request(2, 1.0, 0.2));
+        let number = RequestNumber { period: NOW, number: 2 };
+        robot.hear_request(5, FlowRequest { number, held: 1.0, wanted: 0.2 });
         robot.take_in_requests(&mut outputs);
         let grants = grants(&mut outputs);
         let [(_, grant)] = grants[..] else { panic!("it answers: {grants:?}") };
@@ -258,80 +257,39 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
     assert_eq!(until(NOW + 5, Some((0.2, NOW + 3))), (0.2, NOW + 5));
 }
 
-/// A flow, for how many periods it is granted, and the same of the part for longer.
-type Told = (f64, u32, Option<(f64, u32)>);
-
-/// What the router grants robot 4, which sends it 0.05, and robot 5, which sends it 0.15 and gets 0.1 back for three
-/// periods; its rate is 0.1, and what it sends to the access point lasts. Of each grant how much, for how long, and the part
-/// for longer.
-fn granted_beside(to_access_point: f64, origins_of_5: &[usize]) -> [Told; 2] {
-    let (mut robot, _) = granted(to_access_point - 0.1);
-    let mut outputs = NodeOutputs::of(0);
-    let back = &mut robot.links[0];
-    back.share = 0.1 / back.reliability;
-    let held = robot.held_flow(5);
-    (held.flow, held.lease) = (0.1, Lease::of(0.1, NOW + 3));
-    robot.reservations[0].lease = Lease::of(0.15, NOW + 3);
-    let origins = Arc::new(origins_of_5.iter().copied().collect());
-    robot.hear_request(5, &FlowRequest { origins, ..request(2, 0.15, 0.15) });
-    robot.hear_request(4, &request(2, 0.0, 0.0));
-    robot.reservations[0].lease = Lease::of(0.05, NOW + 3);
-    robot.take_in_requests(&mut outputs);
-    let rounded = |flow: f64| (flow * 1000.0).round() / 1000.0;
-    let part = |it: FlowGrant| it.part.map(|part| (rounded(part.flow), part.until - NOW));
-    let grants: Vec<_> = grants(&mut outputs);
-    let [(Destination::One(4), four), (Destination::One(5), five)] = grants[..] else {
-        panic!("it answers both: {grants:?}")
-    };
-    [four, five].map(|it| (rounded(it.flow), it.until - NOW, part(it)))
-}
-
 /// Where a robot sends back some of what another sends to it, neither grant can be renewed by the other one. What its
 /// other flows carry is granted for longer: all of a third robot's, and of the other's what it does not send back.
 #[test]
 fn what_is_sent_back_carries_no_part_that_is_granted_for_longer() {
+    let told = |to_access_point: f64| {
+        let (mut robot, _) = granted(to_access_point - 0.1);
+        let mut outputs = NodeOutputs::of(0);
+        let back = &mut robot.links[0];
+        back.share = 0.1 / back.reliability;
+        let held = robot.held_flow(5);
+        (held.flow, held.lease) = (0.1, Lease::of(0.1, NOW + 3));
+        robot.reservations[0].lease = Lease::of(0.15, NOW + 3);
+        let number = RequestNumber { period: NOW, number: 2 };
+        robot.hear_request(5, FlowRequest { number, held: 0.15, wanted: 0.15 });
+        robot.hear_request(4, FlowRequest { number, held: 0.0, wanted: 0.0 });
+        robot.reservations[0].lease = Lease::of(0.05, NOW + 3);
+        robot.take_in_requests(&mut outputs);
+        let grants = grants(&mut outputs).into_iter();
+        let rounded = |flow: f64| (flow * 100.0).round() / 100.0;
+        let part = |it: FlowGrant| it.part.map(|part| (rounded(part.flow), part.until - NOW));
+        grants.map(|(to, it)| (to, rounded(it.flow), it.until - NOW, part(it))).collect::<Vec<_>>()
+    };
     let lease = router().lease();
-    let told = |to_access_point| granted_beside(to_access_point, &[5]);
-    let part = |flow| Some((flow, lease));
+    let (four, five) = (Destination::One(4), Destination::One(5));
     // Rate 0.1, 0.05 more than goes back, and 0.05.
-    assert_eq!(told(0.2), [(0.05, lease, None), (0.15, 3, part(0.05))]);
-    assert_eq!(told(0.18), [(0.05, 3, part(0.04)), (0.15, 3, part(0.04))], "each gets its share");
-    assert_eq!(told(0.09), [(0.05, 3, None), (0.15, 3, None)], "it cannot even send its own");
+    let part = Some((0.05, lease));
+    assert_eq!(told(0.2), [(four, 0.05, lease, None), (five, 0.15, 3, part)]);
+    assert_eq!(told(0.19), [(four, 0.05, 3, None), (five, 0.15, 3, None)]);
     assert_eq!(
         told(0.3),
-        [(0.05, lease, None), (0.15, lease, None)],
+        [(four, 0.05, lease, None), (five, 0.15, lease, None)],
         "what goes back is not needed"
     );
-}
-
-/// Who sends the robot's own packets back to it gets what others leave.
-#[test]
-fn what_goes_round_in_a_circle_is_not_granted_for_longer() {
-    let lease = router().lease();
-    let told = |to_access_point| granted_beside(to_access_point, &[0, 5, 7]);
-    let part = |flow| Some((flow, lease));
-    assert_eq!(told(0.14), [(0.05, 3, part(0.04)), (0.15, 3, None)]);
-    assert_eq!(told(0.18), [(0.05, lease, None), (0.15, 3, part(0.03))]);
-}
-
-/// A robot hears whose packets the others send, and raises no flow to one of these robots.
-#[test]
-fn no_flow_is_raised_that_would_close_a_circle() {
-    let asked = |origins_of_4: &[usize]| {
-        let mut robot = router();
-        let mut outputs = NodeOutputs::of(0);
-        let origins = Arc::new(origins_of_4.iter().copied().collect());
-        robot.hear_request(4, &FlowRequest { origins, ..request(1, 0.0, 0.0) });
-        robot.reservations[0].lease = Lease::of(0.05, NOW + LEASE);
-        robot.links[0].share = 0.2;
-        robot.ask_for_flows(&mut outputs);
-        let asked = requests(&mut outputs).into_iter();
-        asked
-            .map(|(to, request)| (to, request.origins.iter().collect::<Vec<_>>()))
-            .collect::<Vec<_>>()
-    };
-    assert_eq!(asked(&[4, 7]), [(Destination::One(5), vec![0, 4, 7])]);
-    assert_eq!(asked(&[4, 5]), []);
 }
 
 /// A grant of a part holds when all of it has ended.
@@ -593,7 +551,8 @@ fn a_flow_takes_the_place_of_another_without_time_or_flow_to_spare() {
         robot.ask_for_flows(&mut outputs);
         let number = requests(&mut outputs)[0].1.number;
         // It has promised another robot something for a while, so that its own flows have to last.
-        robot.hear_request(6, &request(1, 0.0, 0.0));
+        let number_of_other = RequestNumber { period: NOW, number: 1 };
+        robot.hear_request(6, FlowRequest { number: number_of_other, held: 0.0, wanted: 0.0 });
         robot.reservations[0].lease = Lease::of(0.0, NOW + LEASE);
         robot.hear_grant(5, FlowGrant { number, flow: robot.rate, until: NOW + lasts, part: None });
         robot.take_in_requests(&mut outputs);

@@ -454,7 +454,7 @@ fn a_sender_relies_on_its_receiver_and_answers_it() {
     let mut outputs = Outputs::of(0);
     robot.ask_for_flows(&mut outputs);
     let asked = sent(&mut outputs);
-    let [Message::AskFlow(request)] = &asked[..] else { panic!("it asks: {asked:?}") };
+    let [Message::AskFlow(request)] = asked[..] else { panic!("it asks: {asked:?}") };
     assert!((request.wanted - 0.2 * robot.links[0].reliability).abs() < 1e-12);
     assert_eq!((request.held, request.number), (0.0, RequestNumber { period: NOW, number: 1 }));
     robot.hear_grant(
