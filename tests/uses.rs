@@ -50,18 +50,18 @@ pub const FOR_USERS: &str = "";
 /// By file. Of an item that is used in several ways, harnesses are about the first.
 pub const USES: &[Use] = &[
     ("by", "automaton/src/network/order.rs", USER, "Order::by(self.passed, &self.tasks)"),
-    (
-        "take",
-        "automaton/src/node/chunks.rs",
-        "automaton/src/node/ensemble.rs",
-        "chunks.take(&Steps { mail: Some((mail, *deliveries)), round })?;",
-    ),
     ("locate", ROLL, ROBOT_ABSENCE, "absent.locate(&mut self.wrecks, seen,"),
     (
         "lets_move",
         ROLL,
         ROBOT_ABSENCE,
         "self.roll.lets_move(self.id, self.period, self.site.roll_validity())",
+    ),
+    (
+        "take",
+        "automaton/src/node/chunks.rs",
+        "automaton/src/node/ensemble.rs",
+        "chunks.take(&Steps { mail: Some((mail, *deliveries)), round })?;",
     ),
     (
         "enclose",

@@ -22,8 +22,6 @@ pub struct Radio {
     bodies: Vec<Point>,
     audiences: Audiences,
     sent: Vec<Envelope<Message>>,
-    /// Whether one of the messages sent may be answered at once.
-    may_be_answered: bool,
     mail: Mail<Message>,
     delivered: u64,
 }
@@ -38,7 +36,6 @@ impl Radio {
             bodies: Vec::new(),
             audiences: Audiences::default(),
             sent: Vec::new(),
-            may_be_answered: false,
             mail: Mail::default(),
             delivered: 0,
         }
@@ -101,14 +98,10 @@ impl Medium<Message, Point> for Radio {
     }
 
     fn send(&mut self, envelope: Envelope<Message>) {
-        self.may_be_answered |= envelope.message.may_be_answered_at_once();
         self.sent.push(envelope);
     }
 
     fn send_all(&mut self, envelopes: &mut Vec<Envelope<Message>>) {
-        let may_be_answered =
-            |envelope: &Envelope<Message>| envelope.message.may_be_answered_at_once();
-        self.may_be_answered |= envelopes.iter().any(may_be_answered);
         match self.sent.is_empty() {
             true => std::mem::swap(&mut self.sent, envelopes),
             false => self.sent.append(envelopes),
@@ -125,8 +118,7 @@ impl Medium<Message, Point> for Radio {
         &mut self,
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Radio { audiences, sent, may_be_answered, delivered, .. } = self;
-        *may_be_answered = false;
+        let Radio { audiences, sent, delivered, .. } = self;
         sent.drain(..).try_for_each(|envelope| {
             let receivers = audiences.receivers_of(&envelope);
             *delivered += receivers.len() as u64;
@@ -136,9 +128,10 @@ impl Medium<Message, Point> for Radio {
     }
 
     fn mail(&mut self) -> Option<&Mail<Message>> {
-        let Radio { audiences, sent, may_be_answered, mail, delivered, .. } = self;
+        let Radio { audiences, sent, mail, delivered, .. } = self;
+        let may_be_answered = sent.iter().any(|it| it.message.may_be_answered_at_once());
         let receivers_of = |envelope: &Envelope<Message>| audiences.receivers_of(envelope);
-        mail.sort(sent, audiences.ends.len(), receivers_of, std::mem::take(may_be_answered));
+        mail.sort(sent, audiences.ends.len(), receivers_of, may_be_answered);
         *delivered += mail.len() as u64;
         Some(mail)
     }

@@ -111,7 +111,7 @@ impl<N: Node> Chunks<N> {
     fn count(&self, steps: &Steps<'_, N::Message>) -> usize {
         match steps.mail {
             Some((mail, _)) => mail.len(),
-            None => self.slots.iter().filter(|slot| steps.is_due(slot)).count(),
+            None => self.slots.iter().filter(|slot| steps.tick_of(slot).is_some()).count(),
         }
     }
 
@@ -190,16 +190,16 @@ impl<M> Steps<'_, M> {
                 }
                 slot.ask(node);
             }
-            if let Some(round) = self.round.filter(|&round| slot.is_due_in(round)) {
+            if let Some(round) = self.tick_of(slot) {
                 slot.tick(node, round, outputs.now_of(id))?;
             }
         }
         Ok(())
     }
 
-    /// Whether the node of this slot ticks, if it hears nothing.
-    fn is_due(&self, slot: &Slot) -> bool {
-        self.round.is_some_and(|round| slot.is_due_in(round))
+    /// The round in which the node of this slot ticks, if it does.
+    fn tick_of(&self, slot: &Slot) -> Option<usize> {
+        self.round.filter(|&round| slot.is_due_in(round))
     }
 }
 

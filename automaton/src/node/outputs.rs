@@ -48,7 +48,7 @@ impl<M, R> Outputs<M, R> {
         [self.sent.len(), self.reports.len()]
     }
 
-    /// Takes out all but so many messages and reports.
+    /// Keeps the first `sent` messages and `reports` reports, and returns the rest.
     pub(super) fn split_off(&mut self, [sent, reports]: [usize; 2]) -> Self {
         Outputs {
             node: self.node,
@@ -57,7 +57,7 @@ impl<M, R> Outputs<M, R> {
         }
     }
 
-    /// Appends what is said later.
+    /// Appends later messages and reports, of any node.
     pub(super) fn append(&mut self, later: &mut Self) {
         self.sent.append(&mut later.sent);
         self.append_reports(later);

@@ -150,8 +150,8 @@ fn serves_from(post: &PostView, robot: usize, place: Point, settings: &Settings)
     settings.strategy == Strategy::Eager && post.holder == robot && is_within
 }
 
-/// No member has got anywhere as far as the first one knows, which reports it: in the periods that end here, or ended when
-/// the others told what it knows of them. It may report in the first round of a period; news pass one member in each.
+/// No member has got anywhere, as far as the first one, which reports it, can know. News passes one member a round, and
+/// the report may be made in the first round of a period: what is known of a member may be some periods old.
 fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
     if scene.recent.is_empty() {
         return Ok(());
@@ -161,12 +161,12 @@ fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
         .max(settings.errors.stray());
     let now = &scene.snapshot.positions[..];
     let places: Vec<&[Point]> = scene.recent.iter().map(Vec::as_slice).chain([now]).collect();
-    for (place_in_team, &robot) in team.iter().enumerate() {
-        let moves =
-            (0..=place_in_team.div_ceil(settings.rounds_per_period)).filter_map(|periods| {
-                let (now, before) = places[..places.len().saturating_sub(periods)].split_last()?;
-                before.iter().map(|place| (now[robot] - place[robot]).norm()).reduce(f64::min)
-            });
+    for (hops, &robot) in team.iter().enumerate() {
+        let oldest = hops.div_ceil(settings.rounds_per_period);
+        let moves = (0..=oldest).filter_map(|periods| {
+            let (now, before) = places[..places.len().saturating_sub(periods)].split_last()?;
+            before.iter().map(|place| (now[robot] - place[robot]).norm()).reduce(f64::min)
+        });
         let moved = moves.fold(f64::INFINITY, f64::min);
         at_most(moved, bound, &[robot], || {
             format!("the team {team:?} is reported stationary, and robot {robot} moves {moved:.6}")

@@ -10,7 +10,8 @@ use crate::network::limits::SLACK;
 use crate::network::property::Property;
 
 /// The place of each robot's post: the reference of a fixed post; for a redundant robot, where it
-/// was when it came to rest. Others have none: those that move with a team, along Σ, or on from there.
+/// was when it came to rest. Any other robot has none, as it moves with a team or along Σ; that it may be without a
+/// fixed post is checked with the posts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     of_robots: Vec<Option<Point>>,
