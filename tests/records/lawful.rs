@@ -7,6 +7,10 @@ pub const REASONS: &[(&str, &str)] = &[
         "a robot that moves may be anywhere in its trust region; where its links have R = 1, nothing \
          else depends on so little",
     ),
+    (
+        "the outcome is “interrupted”",
+        "a run may be interrupted after the last task is serviced, while robots come to rest",
+    ),
     ("phase: it is that of the period before", "observers may hear of a step of the mission late"),
     ("phase: it is the next one", "robots may be on Σ before the event that tells of its path"),
     (

@@ -52,6 +52,8 @@ pub struct RecruitElection {
     pub standstill: Option<Standstill>,
     /// Whether this robot calls for one ahead of a standstill.
     pub ahead: bool,
+    /// Whether links had been stretched before.
+    pub stretched: bool,
 }
 
 /// What the primary team knows when it gets no farther.

@@ -137,6 +137,7 @@ pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
     use UserAct::{Ask, CountPeriod, CountSilence, RestartClock};
     use guards::{access_point_missed, another_period, answer_heard, prepared, request_over};
     const ANOTHER_PERIOD: UserActs = &[RestartClock, CountPeriod, CountSilence, Ask];
+    const INFORMED: UserActs = &[RestartClock, CountPeriod];
     let builder = Automaton::builder(REQUESTS, Request::Preparing).observing();
     let builder = Request::ALL.iter().fold(builder, |builder, &location| {
         let flow = Flow::exact("τ̇ = 1", |user: &mut User, duration| user.clock += duration);
@@ -153,9 +154,8 @@ pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
         .carried_out(row(On::PeriodOver, another_period(), ANOTHER_PERIOD, |_: &Waiting| Waiting))
         .carried_out(row(On::EndHeard, request_over(), &[], |_: &Waiting| Informed))
         .carried_out(row(On::Missed, access_point_missed(), &[], |_: &Waiting| Deserted))
-        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Informed| {
-            Informed
-        }))
+        .carried_out(row(On::PeriodOver, another_period(), INFORMED, |_: &Informed| Informed))
+        .carried_out(row(On::AnswerHeard, answer_heard(), &[], |_: &Informed| Waiting))
         .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Deserted| {
             Deserted
         }))
@@ -349,5 +349,21 @@ mod tests {
         assert_eq!(user.waits_for_end(&news, |period| period == 0), 0);
         user.waits_for_end(&news, |_| false);
         assert_eq!(user.known_end().map(|end| end.outcome), Some(Outcome::Serviced));
+    }
+
+    /// A team that is cut off gives up, and its leader reaches the task: of two notices with one number the second one
+    /// is known only later.
+    #[test]
+    fn a_user_asks_again_when_the_mission_goes_on_after_its_end() {
+        let ended = Notice::Ended { outcome: Outcome::Blocked, reason: "cut off".into(), task: None };
+        let mut user = user();
+        let news = user.news.next(user.site.robots, Shared::new(ended));
+        user.waits_for_end(&news, |period| period == 0);
+        let passed = user.passed;
+        let goes_on = news.next(user.site.robots, Shared::new(Notice::Quiet));
+        let patience = user.patience();
+        assert_eq!(user.waits_for_end(&goes_on, |period| period == 0), patience);
+        assert_eq!(user.known_end().map(|end| end.outcome), Some(Outcome::Blocked));
+        assert_eq!(user.passed, passed + patience);
     }
 }

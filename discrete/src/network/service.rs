@@ -161,6 +161,7 @@ pub const REQUESTS: TransitionTable<Request, RequestEvent> = {
         request(0, Waiting, On::EndHeard, Informed),
         request(1, Waiting, On::Missed, Deserted),
         request(2, Informed, On::PeriodOver, Informed),
+        request(0, Informed, On::AnswerHeard, Waiting),
         request(2, Deserted, On::PeriodOver, Deserted),
     ])
 };
@@ -184,14 +185,13 @@ mod tests {
     }
 
     #[test]
-    fn an_access_point_takes_up_what_follows_an_end_and_a_user_goes_by_the_first() {
+    fn an_access_point_and_a_user_take_up_what_follows_an_end_unless_it_is_a_silence() {
         let follows = SERVICE.enabled(Service::Over).all(|row| {
             SERVICE.next(Service::Gathering, row.event) == Ok(row.target) && row.priority == 0
         });
         assert!(follows && SERVICE.next(Service::Over, ServiceEvent::EndHeard).is_err());
-        for end in [Request::Informed, Request::Deserted] {
-            let mut rows = REQUESTS.rows().iter().filter(|row| row.source == end);
-            assert!(rows.all(|row| row.target == end));
-        }
+        let targets = |source| REQUESTS.enabled(source).map(|row| row.target);
+        assert!(targets(Request::Informed).any(|target| target == Request::Waiting));
+        assert!(targets(Request::Deserted).all(|target| target == Request::Deserted));
     }
 }

@@ -101,7 +101,11 @@ impl Holds<Exchange> for Robot {
                     self.answered.insert(mover, number);
                 }
                 ExchangeEffect::PartnerAsked => self.partner = None,
-                ExchangeEffect::Takes(duty, partner) => self.taking_over = Some((duty, partner)),
+                ExchangeEffect::Takes(duty, partner) => {
+                    // Whom it had chosen could replace it in the duty that it gives away.
+                    self.partner = None;
+                    self.taking_over = Some((duty, partner));
+                }
             }
         }
     }
@@ -431,6 +435,16 @@ mod tests {
                 assert_eq!(robot.offers().offers_made(), 1, "its next offer is a new one");
             }
         }
+    }
+
+    /// The partner that it had found for its duty before may not be able to bear the new one.
+    #[test]
+    fn a_robot_that_takes_a_duty_over_has_no_partner_for_it_yet() {
+        let mut robot = robot();
+        robot.partner = Some(1);
+        let duty = *robot.duty;
+        Holds::<Exchange>::carry_out(&mut robot, vec![ExchangeEffect::Takes(duty, 1)]);
+        assert_eq!((robot.partner, robot.taking_over), (None, Some((duty, 1))));
     }
 
     /// The mover may come back with its offer, and is to hear the refusal.

@@ -43,7 +43,7 @@ pub(super) fn call(advance: &Advance, robot: &Robot, effects: &mut Effects) -> R
     effects.push(MissionEffect::Stay);
     robot.issue_call(releases_leader, effects);
     let standstill = robot.standstill();
-    RecruitElection { before: advance.path.clone(), standstill, ahead: false }
+    robot.recruit_election(advance.path.clone(), standstill, false)
 }
 
 /// The team of p₁ is too short: it calls for a recruit before it is stuck.
@@ -54,7 +54,7 @@ pub(super) fn call_ahead(
 ) -> RecruitElection {
     effects.push(MissionEffect::Report(MissionEvent::RecruitCalled { robot: robot.id }));
     robot.issue_call(false, effects);
-    RecruitElection { before: advance.path.clone(), standstill: None, ahead: true }
+    robot.recruit_election(advance.path.clone(), None, true)
 }
 
 /// A recruit is called for.
@@ -65,7 +65,7 @@ pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitE
         Notice::Call { caller, .. } if caller == robot.id);
     let route = is_caller.then(|| robot.own_route(id)).flatten();
     effects.push(MissionEffect::Elect(Election::new(id), route));
-    RecruitElection { before: robot.mission.path().cloned(), standstill: None, ahead: false }
+    robot.recruit_election(robot.mission.path().cloned(), None, false)
 }
 
 /// The recruit announces the path Σ that it has found.
@@ -131,11 +131,21 @@ impl Robot {
         self.own_hop(Vec::new()).map(|hop| (call, Shared::new(vec![hop])))
     }
 
+    fn recruit_election(
+        &self,
+        before: Option<Arc<Path>>,
+        standstill: Option<Standstill>,
+        ahead: bool,
+    ) -> RecruitElection {
+        RecruitElection { before, standstill, ahead, stretched: self.stretched }
+    }
+
     /// Whether a recruit has been called for ahead of a standstill, and it learns now that the team goes on as it
-    /// is. Not only the caller learns that: another robot may take over its duty.
+    /// is, with links as long as before. Not only the caller learns that: another robot may take over its duty.
     pub(super) fn learns_that_call_is_vain(&self) -> bool {
         let went_on_alone = matches!(*self.notice(), Notice::Advance { joined: None });
-        self.mission.recruit_election().is_some() && went_on_alone
+        let election = self.mission.recruit_election();
+        went_on_alone && election.is_some_and(|election| election.stretched == self.stretched)
     }
 
     /// Its task as it is announced again where no robot of its tree can come:

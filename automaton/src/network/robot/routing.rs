@@ -410,7 +410,8 @@ impl Robot {
             return 0.0;
         };
         let before = self.links[tree_link].flow();
-        let demand = self.inflow + self.rate + self.reserve();
+        // Less than nothing seems to flow in where a sender has less to send than before, and what it sent is not known.
+        let demand = (self.inflow + self.rate + self.reserve()).max(0.0);
         let outflow = self.outflow();
         if outflow > demand && (is_first || self.has_no_reserve) {
             self.links.iter_mut().for_each(|link| link.share *= demand / outflow);

@@ -95,6 +95,13 @@ impl Conclusions {
             MissionEvent::DutiesExchanged { mover, parked } => {
                 self.exchanging.extend([(mover, step), (parked, step)]);
             }
+            // A path that was seen before may be given up untold.
+            MissionEvent::TaskWithdrawn { .. }
+            | MissionEvent::TaskReannounced { .. }
+            | MissionEvent::ElectionRepeated { .. } => {
+                self.early.clear();
+                self.early_movers.clear();
+            }
             _ => {}
         }
         let MissionEvent::RecruitElected { path, break_points, .. } = event else { return Ok(()) };
@@ -369,11 +376,14 @@ impl Conclusions {
         if has_all && self.path.values().any(|known| is_part(&seen, known)) {
             return Ok(());
         }
-        if ledger.walk.is_none() && ledger.stage() == Stage::Calling {
+        if ledger.awaits_path() {
             let seen = (path.clone(), snapshot.active_team.clone());
             if !self.early.contains(&seen) {
                 self.early.push(seen);
             }
+            return Ok(());
+        }
+        if ledger.outdated.as_ref().is_some_and(|outdated| outdated.awaits_path()) {
             return Ok(());
         }
         let sentence = format!(
@@ -465,10 +475,8 @@ impl Conclusions {
                 let distance = (snapshot.positions[*mover] - position).norm();
                 distance <= MAKING_WAY * clearance
             };
-            let sets_out_early = ledger.walk.is_none()
-                && ledger.stage() == Stage::Calling
-                && snapshot.path.contains(&robot);
-            if settled && sets_out_early {
+            let is_early = ledger.awaits_path() && snapshot.path.contains(&robot);
+            if settled && is_early {
                 self.early_movers.push(robot);
             } else if settled && !teams().chain(others()).any(is_near) {
                 let sentence = format!(

@@ -142,6 +142,11 @@ impl Ledger {
             && self.primary_team.contains(&robot)
     }
 
+    /// Whether a recruit has been called for, and no path for it has been told.
+    pub fn awaits_path(&self) -> bool {
+        self.walk.is_none() && self.stage() == Stage::Calling
+    }
+
     /// Enters an event.
     ///
     /// # Errors

@@ -401,7 +401,7 @@ impl<'a> Judge<'a> {
                     task_or_none(self.ledger.task())
                 ))
             }
-            Outcome::Serviced | Outcome::StepLimit => None,
+            Outcome::Serviced | Outcome::StepLimit | Outcome::Interrupted => None,
             _ if is_done && tasks > 0 => {
                 Some(format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
             }

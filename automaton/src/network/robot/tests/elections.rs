@@ -165,6 +165,7 @@ fn called(own: Post, releases_leader: bool) -> Robot {
         before: None,
         standstill: None,
         ahead: false,
+        stretched: false,
     }));
     robot.election = Some(Arc::new(Election::new(robot.notice_id())));
     robot

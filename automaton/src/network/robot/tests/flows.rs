@@ -459,6 +459,19 @@ fn flows_are_told_where_they_have_changed() {
     assert_eq!(sent(&mut outputs).len(), 1);
 }
 
+/// The flow of a sender has not been heard, and it has less to send than before.
+#[test]
+fn less_than_nothing_flows_in_and_nothing_is_sent() {
+    let mut robot = router();
+    for share in [0.1, 0.0] {
+        robot.links.iter_mut().for_each(|link| link.share = share);
+        (robot.has_swept, robot.inflow) = (false, 0.0);
+        robot.hear_demand(1, -1.0, &mut NodeOutputs::of(0));
+        let shares: Vec<f64> = robot.links.iter().map(|link| link.share).collect();
+        assert_eq!(shares, [0.0; 2]);
+    }
+}
+
 /// Demands go up the tree once all children have told theirs.
 #[test]
 fn a_robot_passes_on_the_demand_that_it_does_not_meet() {
