@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use pleach_automaton::{
-    Automaton, Coordinate, Failure, Reason, Settings, Trajectory, Why, coordinates, from,
+    Automaton, Composition, Coordinate, Failure, Reason, Settings, Trajectory, Why, coordinates, from,
 };
 use pleach_continuous::flow::Method;
 use pleach_discrete::vocabulary;
@@ -208,6 +208,42 @@ fn a_jump_that_is_touched_is_said() {
         for speed in [0.9, 0.999_999, 1.1] {
             assert!(with_speed(speed).doubts().is_empty(), "{force} {speed}");
         }
+    }
+}
+
+/// A brief pulse at a known time, beside a component of its group whose kink is at a state.
+#[test]
+fn known_kinks_count_beside_a_component_that_is_held() {
+    let [p, s, time] = coordinates();
+    let pulse = Table::steps([(0.0, 0.0), (5.0, 1000.0), (5.001, 0.0)]).expect("it is a table");
+    let pulsed = machine([0.0; 2], [pulse.at(&time) + 0.0 * s.sin(), constant(0.0)]);
+    for beside in [-p.abs() + 0.0 * &s, -1.0 * p.sin() + 0.0 * &s] {
+        let bent: Machine = Automaton::starting_in(Here)
+            .initially(Body { place: 1.0, speed: 0.0, time: 0.0 })
+            .flow(Here, [p.rate(beside), time.rate(1.0)])
+            .build()
+            .expect("the model is sound");
+        let both = Composition::builder()
+            .add("pulsed", &pulsed)
+            .add("bent", &bent)
+            .connect("pulsed.p", "bent.s")
+            .build()
+            .expect("the parts fit");
+        let found = both.run(10.0).expect("it can be run").value("pulsed.p", 10.0);
+        assert_near(found.expect("the run lasts"), 1.0, 1e-9);
+    }
+}
+
+/// A table that is 0 everywhere adds no kink to one at a state.
+#[test]
+fn flat_tables_hide_no_kinks() {
+    let [_, s, _] = coordinates();
+    let flat: Expression = "flat((-1, 0), (100, 5), t)".parse().expect("it is a table");
+    let stairs = |more: Expression| [more + (10.0 * &s).floor(), -2.0 * &s];
+    let exact: f64 = (1..=9).map(|k| (10.0 / f64::from(k)).ln() / 2.0).sum();
+    for more in [constant(0.0), flat] {
+        let found = run(&machine([0.0, 1.0], stairs(more)), 2.0).value("p", 2.0);
+        assert_near(found.expect("the run lasts"), exact, 1e-9);
     }
 }
 

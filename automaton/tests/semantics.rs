@@ -231,6 +231,23 @@ fn what_has_no_value_ends_the_run_and_is_named() {
     assert!((trajectory.ending().at.t - 1.0).abs() < 1e-6, "ẋ = x² explodes at 1");
 }
 
+/// Whichever transition on its event a participant has first.
+#[test]
+fn a_label_is_taken_when_any_transition_on_it_has_to_be() {
+    let Clock { time, .. } = Clock::coordinates();
+    let go = || from(Here).on(Go).to(There);
+    let forced = || go().must(time.at_least(1.0));
+    let free = || go().may(time.at_least(1.0));
+    let other = built(clock().transition(go().may(always())));
+    for transitions in [[free(), forced()], [forced(), free()]] {
+        let both = built(transitions.into_iter().fold(clock(), |parts, one| parts.transition(one)));
+        let pair = Composition::builder().add("one", &both).add("other", &other).label("go");
+        let trajectory = pair.build().expect("the parts fit").run(1.5).expect("it can be run");
+        let times: Vec<f64> = trajectory.jumps().iter().map(|jump| jump.at.t).collect();
+        assert_eq!(times, [1.0]);
+    }
+}
+
 #[test]
 fn a_run_is_repeated_to_the_bit() {
     let machine = built(clock().transition(from(Here).on(Go).to(There).must(after(1.0 / 3.0))));

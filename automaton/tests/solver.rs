@@ -214,6 +214,28 @@ fn flows_end_at_their_singularities_and_say_when() {
     }
 }
 
+/// A power that is no number between two times, however near to each other these are.
+#[test]
+fn flows_end_where_a_root_has_no_value() {
+    let [_, _, time] = coordinates();
+    for (gap, exponent) in [(1e-4, 1.5), (1e-2, 0.5), (1e-7, 0.5)] {
+        let rate = ((&time - 5.0).power(2.0) - gap * gap).power(exponent);
+        let trajectory = run([0.0; 2], [rate, constant(0.0)], 10.0);
+        assert_near(trajectory.ending().at.t, 5.0 - gap, 1e-9);
+        assert!(matches!(trajectory.ending().reason, Reason::Finished(Failure::Flow { .. })));
+    }
+}
+
+/// A level that falls by its root comes to zero, and the tank runs on.
+#[test]
+fn a_tank_runs_dry() {
+    let [p, ..] = coordinates();
+    let emptied = run([1.0, 0.0], [-1.0 * p.abs().power(0.5), constant(0.0)], 2.0 - 1e-3);
+    assert_eq!(emptied.ending().reason, Reason::Horizon);
+    let kept = run([4.0, 0.0], [1.0 - p.power(0.5), constant(0.0)], 40.0);
+    assert_eq!(kept.ending().reason, Reason::Horizon);
+}
+
 /// What kinks keep from being as exact as smooth flows: nothing. |sin t| grows by 2 in each half turn.
 #[test]
 fn kinks_of_integrated_waves_add_no_errors() {
@@ -286,6 +308,16 @@ fn two_spikes_add_both_integrals() {
         let exact = 2.0 * PI.sqrt();
         assert!((found - exact).abs() < 1e-4 * exact, "{centres:?}: {found} is not {exact}");
     }
+}
+
+/// A pulse whose ends are rounded by roots: its integral is the product of its height and its width.
+#[test]
+fn pulses_of_roots_are_seen() {
+    let [_, _, time] = coordinates();
+    let bend = |centre: f64| ((&time - centre).power(2.0) + 1e-12).power(0.5);
+    let pulse = 1e4 * (bend(5.01) + bend(4.99) - 2.0 * bend(5.0));
+    let found = run([0.0; 2], [pulse, constant(0.0)], 10.0).value("p", 10.0);
+    assert_near(found.expect("the run lasts"), 2.0, 1e-4);
 }
 
 /// A spike costs few steps wherever it is, and none if it is too small to matter.

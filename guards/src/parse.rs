@@ -22,7 +22,7 @@
 //! disjunction = conjunction { or conjunction }
 //! conjunction = clause { and clause }
 //! clause      = sum relation sum | statement
-//! statement   = not statement | "always" | "never" | "(" disjunction ")"
+//! statement   = not statement | "always" | "never" | "(" disjunction ")" | name
 //! sum         = term { ( "+" | minus ) term }
 //! term        = minus term | factor { ( times | over ) factor }
 //! factor      = minus factor | power
@@ -174,12 +174,18 @@ impl Reader<'_> {
     /// Takes an *or*. In its ASCII spelling it is two bars, but only here, after an operand, where
     /// no bar can open or close an absolute value.
     fn take_or(&mut self) -> bool {
-        let is_bars = self.follow(0, &[Token::Bar, Token::Bar])
-            && self.tokens[self.position].column + 1 == self.tokens[self.position + 1].column;
-        if is_bars {
+        let are_bars = self.is_or_of_bars(0);
+        if are_bars {
             self.position += 2;
         }
-        is_bars || self.take(Token::Or)
+        are_bars || self.take(Token::Or)
+    }
+
+    /// Whether an *or* follows the tokens that are skipped, in the spelling of two bars.
+    fn is_or_of_bars(&self, skipped: usize) -> bool {
+        let at = self.position + skipped;
+        self.follow(skipped, &[Token::Bar, Token::Bar])
+            && self.tokens[at].column + 1 == self.tokens[at + 1].column
     }
 
     /// Whether the name here is a statement by itself: what follows ends it.
@@ -189,8 +195,26 @@ impl Reader<'_> {
             || self.tokens.get(self.position + 1).is_some_and(|next| ends.contains(&next.token))
     }
 
+    /// Whether the parentheses here begin with a name that is a statement by itself: what follows it ends it, behind
+    /// parentheses that are closed.
+    fn opens_with_proposition(&self) -> bool {
+        let run = |skipped: usize, wanted: Token| {
+            let following = self.tokens[self.position..].iter().skip(skipped);
+            following.take_while(|located| located.token == wanted).count()
+        };
+        let name = run(0, Token::Open);
+        let named = self.tokens.get(self.position + name).map(|located| &located.token);
+        let next = name + 1 + run(name + 1, Token::Close);
+        let ends = |end: Token| self.follow(next, &[end]);
+        matches!(named, Some(Token::Word(_) | Token::Quoted(_)))
+            && (self.is_or_of_bars(next) || [Token::And, Token::Or, Token::End].into_iter().any(ends))
+    }
+
     /// Whether anything up to the matching parenthesis belongs to a predicate.
     fn encloses_predicate(&self) -> bool {
+        if self.opens_with_proposition() {
+            return true;
+        }
         let mut open = 0;
         // How many of the parentheses around are those of a choice, whose condition is its own.
         let mut choices = Vec::new();

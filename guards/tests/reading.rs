@@ -166,6 +166,20 @@ fn propositions_are_names_by_themselves() {
     assert_eq!(text.parse(), Ok(expected.clone()));
     assert_eq!("leads && not `two words` || (engaged && x <= 1)".parse(), Ok(expected.clone()));
     assert_eq!(expected.to_string().parse(), Ok(expected));
+    let [p, q] = ["p", "q"].map(proposition);
+    let either = p.clone().or(q.clone());
+    let cases = [
+        ("(p || q)", either.clone()),
+        ("((p) || q)", either.clone()),
+        ("(p || q) && q", either.clone().and(q.clone())),
+        ("q || (p || q)", Predicate::Any([q.clone(), either].into())),
+        ("(p) && q", p.clone().and(q.clone())),
+        ("((p)) or q", p.clone().or(q)),
+        ("(p) <= 1 && p", variable("p").at_most(1.0).and(p)),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(text.parse(), Ok(expected), "{text}");
+    }
 }
 
 /// Nesting counts what is open, not what was.

@@ -75,6 +75,8 @@ pub(crate) struct RateProgram {
     pub(crate) form: Option<LinearForm>,
     /// Follows the rate, where it could grow without bound.
     pub(crate) tracker: Option<Tracker>,
+    /// Follow what its roots are taken of: where that is negative, it has no value.
+    pub(super) radicands: Box<[Tracker]>,
     /// Where it has kinks or jumps.
     pub(super) kinks: Box<[Kinks]>,
 }
@@ -239,6 +241,16 @@ impl Compiler<'_> {
     }
 }
 
+impl Mode {
+    /// Its rates, if they are formulas.
+    pub(super) fn formulas(&self) -> &[RateProgram] {
+        match &self.motion {
+            ModeMotion::Rates(rates) => rates,
+            ModeMotion::Field(_) | ModeMotion::Exact(_) => &[],
+        }
+    }
+}
+
 impl ModeMotion {
     /// Whether it gives the rates of this many coordinates in their order.
     fn is_whole(&self, coordinates: usize) -> bool {
@@ -281,8 +293,31 @@ impl RateProgram {
         let form = rate.linear_form();
         let tracker =
             may_be_unbounded(rate).then(|| rate.at_least(0.0).track(names)).transpose()?;
-        Ok(RateProgram { coordinate, form, tracker, kinks: Kinks::of(rate, names)? })
+        let radicands = radicands(rate).into_iter();
+        let radicands = radicands.map(|radicand| radicand.at_least(0.0).track(names));
+        let radicands = radicands.collect::<Result<_, _>>()?;
+        Ok(RateProgram { coordinate, form, tracker, radicands, kinks: Kinks::of(rate, names)? })
     }
+}
+
+/// What a formula takes roots and other broken powers of, in all of its cases.
+fn radicands(formula: &Expression) -> Vec<&Expression> {
+    let (mut found, mut parts) = (Vec::new(), vec![formula]);
+    while let Some(part) = parts.pop() {
+        match part {
+            Expression::Power(base, exponent) => {
+                parts.push(base);
+                found.extend((exponent.fract() != 0.0).then_some(&**base));
+            }
+            Expression::Unary(_, operand) | Expression::Lookup(_, operand) => parts.push(operand),
+            Expression::Binary(_, left, right) => parts.extend([&**left, &**right]),
+            Expression::Choice(choice) => {
+                parts.extend([&choice.condition.left, &choice.condition.right]);
+            }
+            _ => {}
+        }
+    }
+    found
 }
 
 /// Whether the expression may grow without bound where its variables do not.

@@ -51,6 +51,7 @@ use pleach_guards::{EvaluationError, Predicate, Valuation};
 use thiserror::Error;
 
 use super::Composition;
+use super::blueprint::Leaving;
 use super::jumps::{Joint, Standing};
 use super::simulation::Failure;
 
@@ -187,10 +188,12 @@ impl Explorer<'_> {
         let State { locations, values, .. } = self.states[number].clone();
         let standing = Standing::new(self.composition, &locations);
         let mut jumps = standing.all(&values)?;
-        let is_forced =
-            |jump: &Joint| standing.parts(jump).any(|leaving| leaving.urgency.is_forced());
-        if jumps.iter().any(is_forced) {
-            jumps.retain(is_forced);
+        let is_forced = |leaving: &Leaving| leaving.urgency.is_forced();
+        let forced = jumps.iter().map(|jump| standing.is_for_one(jump, &values, is_forced));
+        let forced = forced.collect::<Result<Vec<bool>, _>>()?;
+        if forced.contains(&true) {
+            let mut forced = forced.into_iter();
+            jumps.retain(|_| forced.next() == Some(true));
         }
         self.states[number].leaving = jumps.len();
         self.transitions += jumps.len();

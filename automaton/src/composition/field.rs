@@ -290,21 +290,16 @@ impl<'a> Field<'a> {
         strain
     }
 
-    /// The first time after `after` at which a rate is known to have a kink or a jump.
+    /// The first time after `after` at which a rate that is not held on one side is known to have a kink or a jump.
     pub(super) fn next_kink(&self, after: f64) -> Option<f64> {
-        if self.hold.is_some() {
-            return None;
-        }
-        let kinks = self.moving.iter().flat_map(|(component, mode)| {
+        let is_held = |number: usize| self.hold.as_ref().is_some_and(|hold| hold.holds(number));
+        let free = self.moving.iter().enumerate().filter(|&(number, _)| !is_held(number));
+        let kinks = free.flat_map(|(_, (component, mode))| {
             let line = |coordinate: usize| match self.rows[component.places[coordinate]] {
                 Row::Line(rate) => Some((self.start[component.places[coordinate]], rate)),
                 Row::Curved | Row::Solved => None,
             };
-            let rates: &[RateProgram] = match &mode.motion {
-                ModeMotion::Rates(rates) => rates,
-                ModeMotion::Field(_) | ModeMotion::Exact(_) => &[],
-            };
-            let kinks = rates.iter().flat_map(|rate| &rate.kinks);
+            let kinks = mode.formulas().iter().flat_map(|rate| &rate.kinks);
             kinks.filter_map(move |kinks| kinks.next(after, line))
         });
         kinks.reduce(f64::min)
@@ -312,13 +307,15 @@ impl<'a> Field<'a> {
 
     /// Rates that could grow without bound, with where their variables are.
     pub(super) fn unbounded_rates(&self) -> impl Iterator<Item = (&'a Component, &'a RateProgram)> {
-        self.moving.iter().flat_map(|(component, mode)| {
-            let rates: &[RateProgram] = match &mode.motion {
-                ModeMotion::Rates(rates) => rates,
-                ModeMotion::Field(_) | ModeMotion::Exact(_) => &[],
-            };
-            rates.iter().filter(|rate| rate.tracker.is_some()).map(|rate| (*component, rate))
-        })
+        self.formulas().filter(|(_, rate)| rate.tracker.is_some())
+    }
+
+    /// The rates that are formulas, with where their variables are.
+    pub(super) fn formulas(&self) -> impl Iterator<Item = (&'a Component, &'a RateProgram)> {
+        let of_each = |&(component, mode): &(&'a Component, &'a Mode)| {
+            mode.formulas().iter().map(move |rate| (component, rate))
+        };
+        self.moving.iter().flat_map(of_each)
     }
 }
 

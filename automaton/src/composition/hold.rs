@@ -76,6 +76,11 @@ impl<'a> Hold<'a> {
         Some(Box::new(Hold { parts, values, is_active }))
     }
 
+    /// Whether rates of this moving component are held on one side.
+    pub(super) fn holds(&self, number: usize) -> bool {
+        self.parts[number].is_some()
+    }
+
     /// Whether rates are those of the sides that are held, and not as they are.
     pub(super) fn is_active(&self) -> bool {
         self.is_active.get()

@@ -120,6 +120,25 @@ impl<'a> Standing<'a> {
         jump.parts.iter().map(move |&(component, transition)| &self.leaving(component)[transition])
     }
 
+    /// Whether one of the transitions that allow a jump is as `is_one` asks. A participant of a label takes the first
+    /// of its transitions that are allowed, and any of them may be why the label is taken.
+    pub(super) fn is_for_one(
+        self,
+        jump: &Joint,
+        state: &[f64],
+        is_one: impl Fn(&Leaving) -> bool,
+    ) -> Result<bool, Failure> {
+        let Some(label) = jump.label else { return Ok(self.parts(jump).any(is_one)) };
+        for &(component, event) in &self.composition.labels[label].participants {
+            for leaving in self.on_event(component, event).filter(|leaving| is_one(leaving)) {
+                if self.allows(component, leaving, state)?.holds {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
     /// A variable that the jump gives any number of an interval.
     pub(super) fn chosen(self, jump: &Joint) -> Option<&'a str> {
         jump.parts.iter().zip(self.parts(jump)).find_map(|(&(component, _), leaving)| {

@@ -50,6 +50,9 @@ impl Kinks {
                     parts.extend([left, right, &choice.then, &choice.otherwise]);
                     found.extend(Kinks::along(&(left - right), [0.0].into(), true, names)?);
                 }
+                Expression::Lookup(table, place) if table.interpolation() == Interpolation::Flat => {
+                    parts.push(place);
+                }
                 Expression::Lookup(table, place) => {
                     parts.push(place);
                     let places = table.points().iter().map(|point| point.0).collect();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pleach_continuous::flow::{
     Curve, Doubt, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Onset, Piece, Tolerances,
 };
-use pleach_guards::{Enclosure, Expression};
+use pleach_guards::{Enclosure, Expression, Interval};
 
 use super::field::{Field, Row};
 use super::halving::middle;
@@ -25,6 +25,8 @@ const BESIDE: f64 = 0.01;
 const FITTING: f64 = 1e-12;
 /// How many parts of a step are looked at for what it does not see.
 const MOST_GLANCES: u32 = 200;
+/// How many spans of a step are examined for where a number is negative.
+const MOST_DIPS: usize = 200;
 /// How often the time of a function is halved for such a polynomial.
 const HALVINGS: u32 = 20;
 
@@ -196,7 +198,7 @@ impl<'a> Solver<'a> {
         if self.overflows(&piece) {
             return Err("the state grows beyond the largest number".to_owned());
         }
-        let bounded = self.check_rates(&piece);
+        let bounded = self.check_rates(&piece).and_then(|()| self.check_radicands(&piece));
         let end = bounded.as_ref().err().map_or(piece.end(), |(singularity, _)| *singularity);
         let progress = self.check_progress(&piece);
         if end > start {
@@ -446,6 +448,30 @@ impl<'a> Solver<'a> {
         Ok(())
     }
 
+    /// No root is taken of a negative number in the piece. The span in which it may be lowest is halved, a limited
+    /// number of times: one that only comes to zero, as the level of a tank does, is not negative anywhere.
+    fn check_radicands(&mut self, piece: &Piece) -> Result<(), (f64, String)> {
+        let whole = [piece.start(), piece.end()];
+        for (component, rate) in self.field.formulas() {
+            for radicand in &rate.radicands {
+                let mut range = |[from, to]: [f64; 2]| {
+                    piece.enclose(from, to, &mut self.enclosures);
+                    let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
+                    let places = &component.places;
+                    let margins = radicand.comparisons().iter();
+                    let ranges =
+                        margins.map(|it| it.margin(&self.enclosures, places, half).range);
+                    ranges.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
+                };
+                let Some(end) = negative(whole, &mut range) else { continue };
+                let name = component.blueprint.coordinates[rate.coordinate];
+                let reason = format!("a root in the rate of `{name}` has no value any more,");
+                return Err((end, reason));
+            }
+        }
+        Ok(())
+    }
+
     fn check_progress(&mut self, piece: &Piece) -> Result<(), String> {
         let crawls = is_crawling(piece.start(), piece.end());
         self.crawled = if crawls { self.crawled + 1 } else { 0 };
@@ -463,6 +489,37 @@ impl<'a> Solver<'a> {
 }
 
 /// Whether a span of time is hardly longer than rounding.
+/// Up to when a number that is bounded by `range` over each span is not negative, if it is negative later in a span of
+/// time, as far as so many halvings show.
+fn negative(whole: [f64; 2], range: &mut dyn FnMut([f64; 2]) -> Interval) -> Option<f64> {
+    let mut spans = vec![(range(whole), whole)];
+    let mut found = None;
+    for _ in 0..MOST_DIPS {
+        let lowest = |one: &(Interval, _), other: &(Interval, _)| {
+            one.0.lower().total_cmp(&other.0.lower())
+        };
+        let at = (0..spans.len()).min_by(|&one, &other| lowest(&spans[one], &spans[other]))?;
+        let (bounds, [from, to]) = spans.swap_remove(at);
+        if bounds.lower() >= 0.0 {
+            return None;
+        }
+        if bounds.upper() < 0.0 {
+            found = Some(from);
+            break;
+        }
+        let middle = middle(from, to)?;
+        spans.extend([[from, middle], [middle, to]].map(|span| (range(span), span)));
+    }
+    let (mut before, mut after) = (whole[0], found?);
+    while let Some(time) = middle(before, after).filter(|_| !is_crawling(before, after)) {
+        match range([time, after]).upper() < 0.0 {
+            true => after = time,
+            false => before = time,
+        }
+    }
+    Some(before)
+}
+
 fn is_crawling(from: f64, to: f64) -> bool {
     to - from <= CRAWLING * to.abs()
 }

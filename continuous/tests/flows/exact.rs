@@ -42,6 +42,12 @@ fn a_large_offset_costs_no_accuracy() {
         let exact = -1e9 * (-time).exp_m1();
         assert!((state(&flow, time)[0] / exact - 1.0).abs() < 1e-14, "at {time} s");
     }
+    // One that is larger than its rate by more than any number: ẋ = b − a x hardly decays.
+    for (decay, offset) in [(1e-20, 1e290), (1e-300, 1e10), (1e-300, 1e300), (1e-310, 1.0)] {
+        let flow = LinearFlow::new(&dmatrix![-decay], &[offset], &[0.0], 10.0).unwrap();
+        let found = state(&flow, 10.0)[0];
+        assert!((found / (10.0 * offset) - 1.0).abs() < 1e-14, "{found} of {offset}");
+    }
 }
 
 /// ẋ = k (y − x) beside ẏ = −y, up to k = 10¹⁵: in the powers of the exponential the slow mode is by so much

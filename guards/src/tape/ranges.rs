@@ -55,7 +55,7 @@ impl Tape {
     pub fn is_sharp(&self) -> bool {
         self.instructions.iter().any(|instruction| match instruction.action {
             Action::Unary(operator) => is_sharp(operator),
-            Action::Quotient => true,
+            Action::Quotient | Action::Root => true,
             Action::Power => {
                 let place = (instruction.operands[1] as usize).checked_sub(self.variables);
                 let exponent = place.and_then(|place| self.constants.get(place));
@@ -77,6 +77,7 @@ impl Tape {
                 match (instruction.action, one, other) {
                     (Action::Unary(operator), Some(range), _) => strains(operator, range),
                     (Action::Quotient, _, Some(divisor)) => ratio(divisor) > MOST_GROWTH,
+                    (Action::Root, Some(base), _) => ratio(base) > MOST_GROWTH * MOST_GROWTH,
                     (Action::Power, Some(base), Some(exponent)) => {
                         let exponent = exponent.lower();
                         let growth = ratio(base).ln() * exponent.abs();

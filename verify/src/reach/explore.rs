@@ -217,8 +217,6 @@ impl Search<'_> {
         let place = &self.model.locations()[entry.location];
         let Entry { location, from, depth, elapsed, start } = entry;
         let number = self.visits.len();
-        let mut crossings: Vec<Crossing> =
-            place.jumps.iter().map(|_| Crossing::default()).collect();
         let entering = self.bounds(location, &start);
         self.visits.push(Visit {
             location,
@@ -236,17 +234,16 @@ impl Search<'_> {
             return Outcome::Broken(Completion::Stopped);
         }
         self.visits[number].segments.push(first);
+        let mut crossings: Vec<Crossing> = place.jumps.iter().map(|_| Crossing::default()).collect();
+        for (jump, crossing) in place.jumps.iter().zip(&mut crossings) {
+            self.cross(jump, elapsed, &entering, crossing);
+        }
         let within = self.inside_invariant(location, start);
         let Some(flowing) = within.and_then(|set| self.kept_waiting(location, set)) else {
-            for (jump, crossing) in place.jumps.iter().zip(&mut crossings) {
-                self.cross(jump, elapsed, &entering, crossing);
-            }
             next.extend(self.landings(location, number, depth, &crossings));
             return Outcome::Ended { next, at_horizon: false };
         };
-        for (at, jump) in place.jumps.iter().enumerate() {
-            self.cross(jump, elapsed, &entering, &mut crossings[at]);
-        }
+        let on_entry: Vec<usize> = crossings.iter().map(|crossing| crossing.parts.len()).collect();
 
         let remaining = self.settings.time_left(elapsed);
         let template = self.prepared[location].template.clone();
@@ -299,9 +296,9 @@ impl Search<'_> {
         {
             next.extend(self.timed_landings(location, number, depth, flow, &flowing, exit));
             let is_timed = |jump: &Jump| self.waits_for(location, jump, exit, &flowing);
-            for (jump, crossing) in place.jumps.iter().zip(&mut crossings) {
+            for ((jump, crossing), on_entry) in place.jumps.iter().zip(&mut crossings).zip(on_entry) {
                 if is_timed(jump) {
-                    crossing.parts.clear();
+                    crossing.parts.truncate(on_entry);
                 }
             }
         }

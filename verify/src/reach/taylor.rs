@@ -79,9 +79,11 @@ impl Integration {
             });
             state.push(TaylorModel::affine(zonotope.center()[axis], slopes.chain(slack), limits));
         }
-        let most = symbols + settings.generators * dimension;
+        let most = symbols + settings.generators.max(1) * dimension;
+        let program = SeriesProgram::compile(rates, variables).ok();
         Integration {
-            program: SeriesProgram::compile(rates, variables).ok(),
+            // With more symbols than there are, nothing is enclosed.
+            program: program.filter(|_| symbols <= SYMBOLS),
             state,
             first_error: symbols,
             symbols,
@@ -90,7 +92,7 @@ impl Integration {
             longest_step: settings.step,
             order: settings.order,
             tolerance: settings.tolerance,
-            most_symbols: most.clamp(symbols + dimension, SYMBOLS),
+            most_symbols: most.min(SYMBOLS),
         }
     }
 
@@ -150,13 +152,15 @@ impl Integration {
         }
     }
 
-    /// Gives the remainders symbols of their own, and makes room for them where need be.
+    /// Gives the remainders symbols of their own, and makes room for them where need be; some stay remainders where
+    /// there is none.
     fn name_errors(&mut self) {
-        if self.symbols + self.state.len() > self.most_symbols {
+        let has_errors = |this: &Self| this.symbols > this.first_error;
+        while self.symbols + self.state.len() > self.most_symbols && has_errors(self) {
             self.merge_errors();
         }
         for component in &mut self.state {
-            if component.name_rest(self.symbols as u8) {
+            if self.symbols < self.most_symbols && component.name_rest(self.symbols as u8) {
                 self.symbols += 1;
             }
         }
@@ -203,6 +207,30 @@ mod tests {
 
     fn template() -> Arc<Template> {
         Arc::new(Template::boxes(1))
+    }
+
+    /// Of so many variables that few symbols are left for errors, or none, or not even one for each variable.
+    #[test]
+    fn symbols_of_many_variables_are_no_more_than_there_are() {
+        let settings = Settings { step: 0.1, order: 2, ..Settings::default() };
+        for (count, is_enclosed) in [(86, true), (130, true), (250, false)] {
+            let names: Vec<String> = (0..count).map(|number| format!("x{number}")).collect();
+            let rate = |name: &String| format!("-sin({name})").parse::<Expression>();
+            let rates: Vec<Expression> =
+                names.iter().map(rate).collect::<Result<_, _>>().expect("formulas");
+            let side = Interval::new(-0.5, 0.5).expect("an interval");
+            let start = StateSet::from_box(vec![side; count]);
+            let mut decay = Integration::new(&rates, &names, &start, &settings);
+            let template = Arc::new(Template::boxes(count));
+            for _ in 0..3 {
+                let stretch = decay.step(&template, 1.0);
+                assert_eq!(stretch.is_some(), is_enclosed, "of {count}");
+                // The widest is that of x = 2 atan(e⁻ᵗ tan ¼).
+                let exact = 2.0 * ((-decay.time()).exp() * 0.25f64.tan()).atan();
+                assert!(stretch.is_none_or(|it| it.after[0] >= exact), "of {count}");
+                assert!(!is_enclosed || decay.symbols <= SYMBOLS, "of {count}");
+            }
+        }
     }
 
     /// From x = 1, of ẋ = x²: 1 ÷ (1 − t), which the first terms of its series are far below.

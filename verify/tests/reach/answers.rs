@@ -128,6 +128,28 @@ fn all_times_are_covered_where_sets_come_back() {
     assert!(matches!(answer, Answer::Holds(_)));
 }
 
+/// A jump at an instant that a clock fixes is taken on entry as well, by states that are past it.
+#[test]
+fn states_past_the_instant_of_a_jump_take_it_on_entry() {
+    let state = Record::new([("c", 1.0)]).unwrap();
+    let coordinates = state.coordinates();
+    let [c] = &coordinates[..] else { unreachable!() };
+    let [wait, done, go] = ["wait", "done", "go"].map(Name::new);
+    let timer: Named = Automaton::starting_in(wait)
+        .initially(state.clone())
+        .flow(wait, c.rate(1.0))
+        .transition(from(wait).on(go).to(done).must(c.at_least(1.0)))
+        .build()
+        .unwrap();
+    for lower in [0.9, 1.0 - 1e-10, 1.0, 1.1] {
+        let late = Forbidden::within("done", variable("c").at_least(1.5));
+        let starts = [boxed(&[(lower, 2.0)])];
+        let effort = Effort::default();
+        let answer = verify(&timer, &[], &starts, &[late], &Settings::default(), &effort).unwrap();
+        assert!(matches!(answer, Answer::Violated(_)), "from {lower}: {answer:?}");
+    }
+}
+
 /// A stable flow that is back in the box where it began has shown all of its states.
 #[test]
 fn a_flow_that_returns_into_its_origin_ends() {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{Failure, Halt, Simulation, Taken};
 use crate::composition::Policy;
+use crate::composition::blueprint::Leaving;
 use crate::composition::jumps::{Joint, Standing};
 use crate::composition::tension::{Conditions, Readiness};
 use crate::executor::{Limit, Round};
@@ -120,11 +121,10 @@ impl Simulation<'_> {
         if participants.iter().any(|(component, _)| self.jumped[*component] == self.round) {
             return Ok(None);
         }
-        let joint = self.standing().together(label, &self.values)?;
-        Ok(joint.filter(|joint| {
-            let mut parts = self.standing().parts(joint);
-            parts.any(|leaving| conditions.is_wanted(leaving, readiness))
-        }))
+        let Some(joint) = self.standing().together(label, &self.values)? else { return Ok(None) };
+        let is_wanted = |leaving: &Leaving| conditions.is_wanted(leaving, readiness);
+        let is_wanted = self.standing().is_for_one(&joint, &self.values, is_wanted)?;
+        Ok(is_wanted.then_some(joint))
     }
 
     pub(super) fn take(&mut self, jump: &Joint, round: &mut Round<'_, Taken>) -> Result<(), Halt> {

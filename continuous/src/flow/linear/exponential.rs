@@ -47,6 +47,8 @@ struct Mode {
 
 /// ‖M τ‖ at most: small enough for a short series, large enough for few powers.
 const LARGEST_NORM: f64 = 0.5;
+/// β at most.
+const LARGEST_SCALE: f64 = 1e270;
 /// Terms of the Taylor series: the next one, (1/2)¹⁵/15! ≈ 2·10⁻¹⁷, is below rounding.
 const TERMS: usize = 15;
 /// A mode has faded beside another when it has shrunk by e⁻⁴⁰ ≈ 4·10⁻¹⁸ more, which is below rounding.
@@ -61,9 +63,10 @@ impl Exponential {
     pub(super) fn new(matrix: &DMatrix<f64>, offset: &DVector<f64>) -> Self {
         let dimension = offset.len();
         // The offset counts as the constant β times b/β, with β such that it does not dominate the
-        // norm; a power of two scales without rounding.
+        // norm; a power of two scales without rounding. Beside a larger one an offset would be lost.
         let matrix_norm = one_norm(matrix);
-        let constant = power_of_two_above((offset.lp_norm(1) / matrix_norm).max(1.0));
+        let scale = (offset.lp_norm(1) / matrix_norm).max(1.0).min(LARGEST_SCALE);
+        let constant = power_of_two_above(scale);
         let mut generator = DMatrix::zeros(dimension + 1, dimension + 1);
         generator.view_mut((0, 0), (dimension, dimension)).copy_from(matrix);
         generator.view_mut((0, dimension), (dimension, 1)).copy_from(&(offset / constant));
