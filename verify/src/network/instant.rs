@@ -261,13 +261,18 @@ pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>,
 ///
 /// # Errors
 ///
-/// The first robot from which no path leads to an access point.
+/// The first robot from which no path leads to an access point, although it has packets to send: of its own, or of
+/// others.
 pub fn connectivity(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation> {
     let carries = snapshot.routes.iter().filter(|route| route.share * route.reliability > 0.0);
     let links: Vec<_> = carries.map(|route| (route.from, route.to)).collect();
     let mut connected = vec![false; limits.robots()];
     tree::mark_connected(&links, &mut connected);
-    match connected.iter().position(|mark| !mark) {
+    let sends_nothing = |robot: usize| {
+        limits.rates()[robot] == 0.0 && links.iter().all(|&(_, receiver)| receiver != robot)
+    };
+    let unconnected = |&robot: &usize| !connected[robot] && !sends_nothing(robot);
+    match (0..connected.len()).find(unconnected) {
         None => Ok(()),
         Some(robot) => Err(Instant::of(snapshot).violation(
             Property::Connectivity,

@@ -322,6 +322,7 @@ impl Robot {
             destination: _,
             target: _, // by the announcement
             waypoint: _,
+            goes_by_link: _,
             proposal: _,
             told_move: _,
             problem: _,

@@ -7,6 +7,7 @@
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::Disc;
+use pleach_continuous::network::reliability::LinkReliability;
 
 use super::Robot;
 use super::motion::STILL;
@@ -29,8 +30,12 @@ struct Body {
 }
 
 impl Bodies {
-    /// Where they are in this control period. One that is within `leash` of where one has rested has not moved.
-    fn renew(&mut self, places: &[Point], leash: f64) {
+    /// Where they are in this control period. One that is within `leash` of where one has rested has not moved; where
+    /// one that rests is `out_of_sight`, it is still there as far as is known.
+    fn renew(&mut self, places: &[Point], leash: f64, out_of_sight: impl Fn(Point) -> bool) {
+        let is_seen = |body: &Body| places.iter().any(|place| (body.since - place).norm() <= leash);
+        let rests = |body: &&Body| body.still >= REST && out_of_sight(body.place) && !is_seen(body);
+        let remembered: Vec<Body> = self.0.iter().filter(rests).copied().collect();
         let renewed = |&place: &Point| {
             let known = self.0.iter().find(|body| (body.since - place).norm() <= leash);
             match known {
@@ -38,7 +43,7 @@ impl Bodies {
                 None => Body { place, since: place, still: 0 },
             }
         };
-        self.0 = places.iter().map(renewed).collect();
+        self.0 = places.iter().map(renewed).chain(remembered).collect();
     }
 
     /// Where they are.
@@ -56,7 +61,8 @@ impl Robot {
     /// A control period begins: where the bodies near it are.
     pub(super) fn see_bodies(&mut self, places: &[Point]) {
         let leash = STILL * self.clearance().min(self.site.settings.step_radius);
-        self.bodies.renew(places, leash);
+        let (position, sight) = (self.position, self.site.radio.range() - leash);
+        self.bodies.renew(places, leash, |place| (place - position).norm() > sight);
         if !places.is_empty() {
             self.note_change();
         }
@@ -78,7 +84,7 @@ mod tests {
         let at = |x: f64| Point::new(x, 0.0);
         let mut see = |xs: &[f64]| {
             let places: Vec<Point> = xs.iter().copied().map(at).collect();
-            bodies.renew(&places, 0.1);
+            bodies.renew(&places, 0.1, |_| false);
             (bodies.places().count(), bodies.resting().map(|place| place.x).collect::<Vec<_>>())
         };
         for still in 0..REST {
@@ -88,5 +94,22 @@ mod tests {
         assert_eq!(see(&[1.08, 9.0]), (2, vec![1.08]), "it is still within its leash");
         assert_eq!(see(&[1.2]), (1, vec![]), "it has left it");
         assert_eq!(see(&[]), (0, vec![]));
+    }
+
+    /// A robot that turns round before it would turn round again as soon as it loses sight of it.
+    #[test]
+    fn a_body_that_rests_is_remembered_until_its_place_is_seen_empty() {
+        let mut bodies = Bodies::default();
+        let (resting, moving) = (Point::new(1.0, 0.0), Point::new(2.0, 0.0));
+        let mut see = |places: &[Point], out_of_sight: bool| {
+            bodies.renew(places, 0.1, |_| out_of_sight);
+            bodies.resting().collect::<Vec<_>>()
+        };
+        (0..REST).for_each(|_| assert_eq!(see(&[resting], false), []));
+        assert_eq!(see(&[resting, moving], false), [resting]);
+        assert_eq!(see(&[], true), [resting]);
+        assert_eq!(see(&[resting], true), [resting], "once");
+        assert_eq!(see(&[], true), [resting]);
+        assert_eq!(see(&[], false), []);
     }
 }

@@ -211,7 +211,8 @@ impl Robot {
 
     /// Whether the primary team is dissolved.
     pub(super) fn is_dissolved(&self) -> bool {
-        self.gives_path_up() || self.takes_step(MissionStep::Ended)
+        use MissionStep::{Blocked, Ended};
+        self.gives_path_up() || self.takes_step(Ended) || self.takes_step(Blocked)
     }
 
     /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.

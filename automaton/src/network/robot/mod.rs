@@ -267,6 +267,8 @@ pub struct Robot {
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
+    /// Whether its link has made it take the way that it is on.
+    goes_by_link: bool,
     proposal: Option<Segment>,
     /// Its proposal as it has been told.
     told_move: Option<Segment>,
@@ -383,6 +385,7 @@ impl Robot {
             is_unsettled: true,
             destination: None,
             waypoint: None,
+            goes_by_link: false,
             proposal: None,
             told_move: None,
             problem: None,

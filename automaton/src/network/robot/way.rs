@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::segment::Segment;
-use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic};
+use pleach_continuous::geometry::{Destination, Disc, FreeSpace, Geodesic};
 use pleach_discrete::network::PostKind;
 
 use super::Robot;
@@ -34,6 +34,7 @@ impl Robot {
         let free_space: &FreeSpace = &site.free_space;
         if self.destination.as_ref().is_none_or(|known| known.goal() != goal) {
             self.destination = Some(free_space.destination(goal));
+            self.goes_by_link = false;
         }
         let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
         let keep_out = KEEP_OUT * self.clearance();
@@ -47,37 +48,38 @@ impl Robot {
             .map(|n| Disc { center: n.position(), radius: keep_out })
             .chain(fixed.iter().copied())
             .collect();
-        let allowance = DETOUR_ALLOWANCE * self.clearance();
-        // A parked robot in the way takes part in an exchange of duties, a wreck or a body in none.
-        let around = |from: Point, direct: Geodesic| {
-            let direct = match fixed.is_empty() {
-                true => direct,
-                false => free_space.detour(from, goal, &fixed).unwrap_or(direct),
-            };
-            match free_space.detour(from, goal, &parked) {
-                Some(round)
-                    if round.length <= direct.length + allowance
-                        && self.may_change_over_along(from, &round) =>
-                {
-                    round
-                }
-                _ => direct,
-            }
-        };
-        let path = around(self.position, direct);
-        if let Some(path) = self.way_of_link(&path, &parked) {
-            return Some(self.next_corner(&path).unwrap_or(goal));
+        let path = self.way_around(self.position, direct, &fixed, &parked);
+        let way = self.way_of_link(&path, &parked);
+        self.goes_by_link = way.is_some();
+        if let Some(way) = way {
+            return Some(self.next_corner(&way).unwrap_or(goal));
         }
         let corner = self.next_corner(&path).unwrap_or(goal);
         match self.waypoint.filter(|&kept| kept != corner && self.may_keep(kept)) {
             Some(kept) => {
                 let onward = free_space.geodesic_to(kept, self.destination.as_ref()?)?;
-                let length = (kept - self.position).norm() + around(kept, onward).length;
+                let length = (kept - self.position).norm() + self.way_around(kept, onward, &fixed, &parked).length;
                 let margin = HYSTERESIS * self.clearance();
                 Some(if length <= path.length + margin { kept } else { corner })
             }
             None => Some(corner),
         }
+    }
+
+    /// The way from this place to the goal, which leads there `direct`, round what does not move, and round parked robots
+    /// as well where that is short: those take part in an exchange of duties, a wreck or a body in none.
+    fn way_around(&self, from: Point, direct: Geodesic, fixed: &[Disc], parked: &[Disc]) -> Geodesic {
+        let space = &self.site.free_space;
+        let Some(goal) = self.destination.as_ref().map(Destination::goal) else { return direct };
+        let direct = match fixed.is_empty() {
+            true => direct,
+            false => space.detour(from, goal, fixed).unwrap_or(direct),
+        };
+        let most = direct.length + DETOUR_ALLOWANCE * self.clearance();
+        let is_taken = |round: &Geodesic| {
+            round.length <= most && self.may_change_over_along(from, round)
+        };
+        space.detour(from, goal, parked).filter(is_taken).unwrap_or(direct)
     }
 
     /// The length of the shortest way between two places around robots that have stopped; none if they close it.
@@ -106,7 +108,10 @@ impl Robot {
             return None;
         }
         let onward = space.geodesic_to(parent, self.destination.as_ref()?)?;
-        let least = left(onward.length) + HYSTERESIS * self.clearance();
+        // A robot that goes by the parent's side already does not turn round where it gains less by that.
+        let is_kept = self.keeps_way_of_link();
+        let hysteresis = if is_kept { 0.0 } else { HYSTERESIS };
+        let least = left(onward.length) + hysteresis * self.clearance();
         if left(back.length + path.length) <= least {
             return None;
         }
@@ -123,8 +128,8 @@ impl Robot {
         let is_obstructed =
             |piece: Segment| parked.iter().any(|disc| piece.distance(disc.center) < disc.radius);
         let allowance = match way.segments(self.position).any(is_obstructed) {
-            true => DETOUR_ALLOWANCE,
-            false => HYSTERESIS,
+            true if !is_kept => DETOUR_ALLOWANCE,
+            _ => hysteresis,
         };
         (by_path > left(onward.length) + allowance * self.clearance()).then_some(way)
     }
@@ -132,7 +137,7 @@ impl Robot {
     /// Another way to the goal than `path`, where that is out of reach of these access points: by way of that to which
     /// the robot is attached and the next, pulled taut. On the way between those it always reaches one of them.
     fn way_over(&self, crossing: &[usize], path: &Geodesic) -> Option<Geodesic> {
-        if self.keeps_link_along(crossing, self.position, path) {
+        if !self.keeps_way_of_link() && self.keeps_link_along(crossing, self.position, path) {
             return None;
         }
         let (site, space) = (&self.site, &self.site.free_space);
@@ -145,6 +150,11 @@ impl Robot {
             from = to;
         }
         Some(space.taut(self.position, &corners))
+    }
+
+    /// Whether it is on a way that its link has made it take, and gets on.
+    fn keeps_way_of_link(&self) -> bool {
+        self.goes_by_link && self.still_periods < PATIENCE_WITH_WAYS
     }
 
     /// Whether its link to the robot that it follows, which `path` leads to, would exceed its limit on `way`. It is

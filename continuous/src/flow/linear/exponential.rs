@@ -65,8 +65,8 @@ impl Exponential {
         // The offset counts as the constant β times b/β, with β such that it does not dominate the
         // norm; a power of two scales without rounding. Beside a larger one an offset would be lost.
         let matrix_norm = one_norm(matrix);
-        let scale = (offset.lp_norm(1) / matrix_norm).max(1.0).min(LARGEST_SCALE);
-        let constant = power_of_two_above(scale);
+        let scale = (offset.lp_norm(1) / matrix_norm).max(1.0);
+        let constant = power_of_two_above(scale.min(LARGEST_SCALE));
         let mut generator = DMatrix::zeros(dimension + 1, dimension + 1);
         generator.view_mut((0, 0), (dimension, dimension)).copy_from(matrix);
         generator.view_mut((0, dimension), (dimension, 1)).copy_from(&(offset / constant));

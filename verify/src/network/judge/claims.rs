@@ -176,7 +176,7 @@ fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
 }
 
 /// A recruit is redundant until it is elected, or a node that bears nothing but the robot that calls. It may have
-/// retired in the period in which it is elected.
+/// become that in the period in which it is elected.
 fn is_free(robot: usize, path: &[usize], scene: &Scene) -> Result<(), Dispute> {
     let Some(previous) = scene.previous else { return Ok(()) };
     // p₁ may have attached to it, and called, in the period in which it is elected.
@@ -186,16 +186,21 @@ fn is_free(robot: usize, path: &[usize], scene: &Scene) -> Result<(), Dispute> {
             children.map(|(child, _)| child).eq(path.last())
         })
     };
-    let retirement = MissionEvent::RoleChanged { robot, from: Role::Node, to: Role::Redundant };
-    match previous.roles[robot] {
-        Role::Redundant | Role::Recruit => Ok(()),
-        Role::Node if scene.events.contains(&retirement) => Ok(()),
-        Role::Node if path.len() == 2 && bears_caller_alone() => Ok(()),
-        role => {
-            let sentence = format!("robot {robot}, a {}, is elected recruit", role.name());
-            Err(Dispute::of(Property::Events, &[robot], sentence))
-        }
+    let is_free = |role: Role| match role {
+        Role::Redundant => true,
+        Role::Node => path.len() == 2 && bears_caller_alone(),
+        _ => false,
+    };
+    let before = previous.roles[robot];
+    let mut meanwhile = scene.events.iter().filter_map(|event| match *event {
+        MissionEvent::RoleChanged { robot: it, to, .. } if it == robot => Some(to),
+        _ => None,
+    });
+    if before == Role::Recruit || is_free(before) || meanwhile.any(is_free) {
+        return Ok(());
     }
+    let sentence = format!("robot {robot}, a {}, is elected recruit", before.name());
+    Err(Dispute::of(Property::Events, &[robot], sentence))
 }
 
 /// Sec. V-B2: the break points are those of the tree at the beginning or at the end of the period;
@@ -353,7 +358,9 @@ fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> R
     let goes_on = scene.events.iter().any(|event| {
         matches!(*event, MissionEvent::Reattached { robot: it, parent } if it == robot && is_edge(parent))
     });
-    let clause = match is_edge(parent) || goes_on {
+    // One whose team is dissolved may look for a nearer parent at once, as others do, and that is not told.
+    let is_dismissed = ledger.dismissed.contains(&robot);
+    let clause = match is_edge(parent) || goes_on || is_dismissed {
         false => "which is not its parent",
         true if !ledger.is_or_was_primary(robot) => "and is not of the primary team",
         true => return Ok(()),
