@@ -4,7 +4,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use pleach_automaton::{
-    Automaton, Composition, Coordinate, Failure, Reason, Settings, Trajectory, Why, coordinates, from,
+    Automaton, Composition, Coordinate, Failure, Reason, Settings, Trajectory, Why, coordinates,
+    from,
 };
 use pleach_continuous::flow::Method;
 use pleach_discrete::vocabulary;

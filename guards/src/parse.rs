@@ -207,7 +207,8 @@ impl Reader<'_> {
         let next = name + 1 + run(name + 1, Token::Close);
         let ends = |end: Token| self.follow(next, &[end]);
         matches!(named, Some(Token::Word(_) | Token::Quoted(_)))
-            && (self.is_or_of_bars(next) || [Token::And, Token::Or, Token::End].into_iter().any(ends))
+            && (self.is_or_of_bars(next)
+                || [Token::And, Token::Or, Token::End].into_iter().any(ends))
     }
 
     /// Whether anything up to the matching parenthesis belongs to a predicate.

@@ -50,7 +50,9 @@ impl Kinks {
                     parts.extend([left, right, &choice.then, &choice.otherwise]);
                     found.extend(Kinks::along(&(left - right), [0.0].into(), true, names)?);
                 }
-                Expression::Lookup(table, place) if table.interpolation() == Interpolation::Flat => {
+                Expression::Lookup(table, place)
+                    if table.interpolation() == Interpolation::Flat =>
+                {
                     parts.push(place);
                 }
                 Expression::Lookup(table, place) => {

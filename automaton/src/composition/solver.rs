@@ -459,8 +459,7 @@ impl<'a> Solver<'a> {
                     let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
                     let places = &component.places;
                     let margins = radicand.comparisons().iter();
-                    let ranges =
-                        margins.map(|it| it.margin(&self.enclosures, places, half).range);
+                    let ranges = margins.map(|it| it.margin(&self.enclosures, places, half).range);
                     ranges.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
                 };
                 let Some(end) = negative(whole, &mut range) else { continue };
@@ -495,9 +494,8 @@ fn negative(whole: [f64; 2], range: &mut dyn FnMut([f64; 2]) -> Interval) -> Opt
     let mut spans = vec![(range(whole), whole)];
     let mut found = None;
     for _ in 0..MOST_DIPS {
-        let lowest = |one: &(Interval, _), other: &(Interval, _)| {
-            one.0.lower().total_cmp(&other.0.lower())
-        };
+        let lowest =
+            |one: &(Interval, _), other: &(Interval, _)| one.0.lower().total_cmp(&other.0.lower());
         let at = (0..spans.len()).min_by(|&one, &other| lowest(&spans[one], &spans[other]))?;
         let (bounds, [from, to]) = spans.swap_remove(at);
         if bounds.lower() >= 0.0 {

@@ -355,7 +355,8 @@ mod tests {
     /// is known only later.
     #[test]
     fn a_user_asks_again_when_the_mission_goes_on_after_its_end() {
-        let ended = Notice::Ended { outcome: Outcome::Blocked, reason: "cut off".into(), task: None };
+        let ended =
+            Notice::Ended { outcome: Outcome::Blocked, reason: "cut off".into(), task: None };
         let mut user = user();
         let news = user.news.next(user.site.robots, Shared::new(ended));
         user.waits_for_end(&news, |period| period == 0);

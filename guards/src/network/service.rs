@@ -27,9 +27,17 @@ pub fn end_heard() -> Guard {
     named("end heard", proposition("hears_end") & !may_go_on)
 }
 
-/// The robots that take part now are not those of the elections for its task, or may not be in a while.
+/// The robots that take part now are not those of the elections for its task, or may not be in a while; or some are
+/// free that were not, or may be in a while.
 fn may_ask_others() -> Predicate {
-    proposition("misses_robot") | proposition("has_newcomers") | may_come()
+    let are_free_soon = proposition("awaits_end") | proposition("has_freed");
+    proposition("misses_robot") | proposition("has_newcomers") | may_come() | are_free_soon
+}
+
+/// Robots take part that do not in the elections for its task, or have become free since it was announced.
+fn has_others() -> Predicate {
+    let are_free = proposition("has_freed") & !proposition("awaits_retirements");
+    proposition("has_newcomers") | are_free
 }
 
 /// Robots may take part in a while that do not now.
@@ -140,7 +148,7 @@ pub fn no_answer() -> Guard {
 /// A robot that takes part in the elections for the task is gone, and others are left; or they have given the
 /// task up, and others take part now.
 pub fn announces_again() -> Guard {
-    let others = proposition("hears_failure") & proposition("has_newcomers");
+    let others = proposition("hears_failure") & has_others();
     let again = proposition("misses_robot") | others;
     named("announces again", pursues() & again & has_robots())
 }
@@ -149,7 +157,7 @@ pub fn announces_again() -> Guard {
 pub fn elects_again() -> Guard {
     let unanswered = goes_unanswered() & another_time();
     let in_vain = proposition("hears_failure") | lacks_bid();
-    let others = in_vain & proposition("has_newcomers") | lacks_bid() & has_found_way();
+    let others = in_vain & has_others() | lacks_bid() & has_found_way();
     let again = proposition("misses_robot") | others | unanswered;
     named("announces again", pursues() & again & has_robots())
 }

@@ -234,7 +234,8 @@ impl Search<'_> {
             return Outcome::Broken(Completion::Stopped);
         }
         self.visits[number].segments.push(first);
-        let mut crossings: Vec<Crossing> = place.jumps.iter().map(|_| Crossing::default()).collect();
+        let mut crossings: Vec<Crossing> =
+            place.jumps.iter().map(|_| Crossing::default()).collect();
         for (jump, crossing) in place.jumps.iter().zip(&mut crossings) {
             self.cross(jump, elapsed, &entering, crossing);
         }
@@ -296,7 +297,8 @@ impl Search<'_> {
         {
             next.extend(self.timed_landings(location, number, depth, flow, &flowing, exit));
             let is_timed = |jump: &Jump| self.waits_for(location, jump, exit, &flowing);
-            for ((jump, crossing), on_entry) in place.jumps.iter().zip(&mut crossings).zip(on_entry) {
+            for ((jump, crossing), on_entry) in place.jumps.iter().zip(&mut crossings).zip(on_entry)
+            {
                 if is_timed(jump) {
                     crossing.parts.truncate(on_entry);
                 }

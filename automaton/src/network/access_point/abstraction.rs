@@ -129,6 +129,9 @@ impl AccessPoint {
             service,
             closed,
             // Constant: the request comes before the first state, and does not change. No task of it ends.
+            closed_in: _,
+            announced_in: _,
+            failed_in: _,
             site: _,
             position: _,
             requested: _,

@@ -24,7 +24,7 @@ use super::member::{NodeOutputs, Sense};
 use super::message::Message;
 use super::order::Order;
 use super::record::MissionEvent;
-use super::robot::{RobotError, RobotFault};
+use super::robot::{PATIENCE_WITH_UNUSED_POSTS, RobotError, RobotFault};
 use super::roll::{Roll, Sightings, Wreck};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election, renew};
@@ -102,6 +102,12 @@ pub struct AccessPoint {
     serves: Arc<IdSet>,
     /// The tasks that are over.
     closed: Arc<IdSet>,
+    /// The control period in which it has closed a task last that had been announced.
+    closed_in: Option<u32>,
+    /// The control period in which the task was announced last.
+    announced_in: u32,
+    /// The control period in which it has heard that the task is given up.
+    failed_in: Option<u32>,
     /// What the user has asked for.
     requested: Option<Order>,
     /// Its state in the service of the tasks, and its stage in the control period.
@@ -154,6 +160,9 @@ impl AccessPoint {
             known_tasks: Vec::new(),
             serves: Arc::default(),
             closed: Arc::default(),
+            closed_in: None,
+            announced_in: 0,
+            failed_in: None,
             requested: None,
             service: Current::new(Serving::Gathering(Gathering)),
             rounds: Current::new(Rounds::Resting(Resting)),
@@ -282,6 +291,9 @@ impl AccessPoint {
         if self.beacons().fold(false, hear) {
             // What it does not take up now it hears again.
             (self.newest, self.has_news) = (Some(newest), true);
+            if self.hears_failure() {
+                self.failed_in.get_or_insert(self.period);
+            }
             self.jump()?;
             self.newest = None;
         }
@@ -331,6 +343,7 @@ impl AccessPoint {
         self.crossing.clear();
         if let Notice::Task(announcement) = &**bulletin.notice() {
             self.learn((id, announcement.clone()));
+            (self.announced_in, self.failed_in) = (self.period, None);
         }
         match **bulletin.notice() {
             Notice::Task(_) | Notice::Call { .. } => {
@@ -360,6 +373,28 @@ impl AccessPoint {
     /// A task is over: from now on its robots hear so.
     fn close(&mut self, task: usize) {
         Arc::make_mut(&mut self.closed).insert(task);
+        let is_announced = self.announced.as_ref().is_some_and(|(_, it)| task <= it.task);
+        if is_announced || task < self.known_tasks.len() {
+            self.closed_in = Some(self.period);
+        }
+    }
+
+    /// Whether robots were not redundant when it announced its task that may be now, as a task has ended.
+    fn has_freed(&self) -> bool {
+        self.closed_in.is_some_and(|closed_in| self.announced_in < self.retired_by(closed_in))
+    }
+
+    /// Whether it waits for them to become redundant, and for the robots of a team that has given up.
+    fn awaits_retirements(&self) -> bool {
+        let ends = self.closed_in.into_iter().chain(self.failed_in);
+        self.has_freed() && ends.max().is_some_and(|end| self.period < self.retired_by(end))
+    }
+
+    /// The control period in which robots are redundant that a task has had which ended in this one: the robot at the
+    /// end of a branch is first, then the one before it, as each hears of the next.
+    fn retired_by(&self, end: u32) -> u32 {
+        let depth = (self.longest_wait / 2 + 1) as u32;
+        end.saturating_add(depth.saturating_mul(PATIENCE_WITH_UNUSED_POSTS + 2))
     }
 
     /// The way to the robot that calls: through a robot that is attached here, or through another

@@ -92,6 +92,12 @@ crate::observed! {
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
         task_left: point.next_task().is_some(),
+        /// A task that is serviced is to end: its robots are free then.
+        awaits_end: point.awaits_end(),
+        /// A task has ended since it announced its task, or so shortly before that robots could not be recruited yet.
+        has_freed: point.has_freed(),
+        /// Those may have yet to become redundant, or those of a team that has given up.
+        awaits_retirements: point.awaits_retirements(),
         /// A task is still to come, or to end: the user will ask for it, or it is serviced for a time.
         task_to_come: point.expects_task(),
         /// A task that is serviced has not been heard of in this control period.
@@ -176,7 +182,7 @@ impl AccessPoint {
     }
 
     /// Whether it hears that the mission has ended with a task that is given up.
-    fn hears_failure(&self) -> bool {
+    pub(super) fn hears_failure(&self) -> bool {
         let heard = self.heard_notice();
         matches!(heard, Some(Notice::Ended { outcome, .. }) if outcome.is_given_up())
     }
@@ -275,6 +281,14 @@ impl AccessPoint {
             |(task, errand): (usize, Errand)| errand.lasts.is_some() && self.is_open(task);
         self.requested.as_ref().is_some_and(|order| order.continues)
             || self.errands().any(is_to_end)
+    }
+
+    /// Whether a task that is serviced is to end.
+    fn awaits_end(&self) -> bool {
+        let pursued = self.announced().map(|announced| announced.task);
+        let is_serviced = |task: usize| task < self.known_tasks.len() && pursued != Some(task);
+        let mut errands = self.errands().filter(|&(task, _)| is_serviced(task));
+        errands.any(|(task, errand)| errand.lasts.is_some() && self.is_open(task))
     }
 
     /// Whether the task that is pursued has been taken back.

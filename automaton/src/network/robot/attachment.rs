@@ -29,7 +29,7 @@ const REATTACHMENT_GAIN: f64 = 0.05;
 const PATIENCE_WITH_ORPHANED_POSTS: u32 = 12;
 
 /// A node without a branch becomes redundant after this many control periods.
-pub(super) const PATIENCE_WITH_UNUSED_POSTS: u32 = 2;
+pub(in super::super) const PATIENCE_WITH_UNUSED_POSTS: u32 = 2;
 
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.

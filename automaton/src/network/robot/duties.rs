@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::{
-    Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Post, PostId, PostKind, Role,
+    Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Phase, Post, PostId, PostKind, Role,
 };
 use pleach_discrete::{Event as _, Location as _};
 use pleach_guards::network::duty as guards;
@@ -207,6 +207,15 @@ impl Robot {
     /// Whether another task is announced, or its own again.
     pub(super) fn is_superseded(&self) -> bool {
         self.takes_step(MissionStep::Announced) || self.takes_step(MissionStep::Overtaken)
+    }
+
+    /// Whether a leader is bound to its post no more: another task is announced, or its own again; or the mission is
+    /// given up, and tasks have ended, so that it may go on once their robots are free.
+    pub(super) fn is_unbound(&self) -> bool {
+        use MissionStep::{Blocked, Ended};
+        let is_given_up =
+            || self.phase() == Phase::Ended || self.takes_step(Ended) || self.takes_step(Blocked);
+        self.is_superseded() || !self.closed.is_empty() && is_given_up()
     }
 
     /// Whether the primary team is dissolved.

@@ -188,8 +188,8 @@ facts! {
             on_coming_path: robot.is_on_coming_path(),
             /// It learns in this jump that Σ is given up or done.
             called_off: robot.is_called_off(),
-            /// It learns in this jump that another task is announced.
-            superseded: robot.is_superseded(),
+            /// It learns in this jump that another task is announced; or the mission is given up, and tasks have ended.
+            superseded: robot.is_unbound(),
             /// It learns in this jump that the primary team is dissolved.
             dissolved: robot.is_dissolved(),
             /// It is relieved now of the last post of Σ.

@@ -88,6 +88,7 @@ use super::record::MissionEvent;
 use super::roll::{Roll, Sightings, Wreck};
 use super::shared::Shared;
 use super::site::Site;
+pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use bodies::Bodies;
 use duties::Label;
 use hearing::Neighbour;

@@ -58,7 +58,8 @@ impl Robot {
         match self.waypoint.filter(|&kept| kept != corner && self.may_keep(kept)) {
             Some(kept) => {
                 let onward = free_space.geodesic_to(kept, self.destination.as_ref()?)?;
-                let length = (kept - self.position).norm() + self.way_around(kept, onward, &fixed, &parked).length;
+                let length = (kept - self.position).norm()
+                    + self.way_around(kept, onward, &fixed, &parked).length;
                 let margin = HYSTERESIS * self.clearance();
                 Some(if length <= path.length + margin { kept } else { corner })
             }
@@ -68,7 +69,13 @@ impl Robot {
 
     /// The way from this place to the goal, which leads there `direct`, round what does not move, and round parked robots
     /// as well where that is short: those take part in an exchange of duties, a wreck or a body in none.
-    fn way_around(&self, from: Point, direct: Geodesic, fixed: &[Disc], parked: &[Disc]) -> Geodesic {
+    fn way_around(
+        &self,
+        from: Point,
+        direct: Geodesic,
+        fixed: &[Disc],
+        parked: &[Disc],
+    ) -> Geodesic {
         let space = &self.site.free_space;
         let Some(goal) = self.destination.as_ref().map(Destination::goal) else { return direct };
         let direct = match fixed.is_empty() {
@@ -76,9 +83,8 @@ impl Robot {
             false => space.detour(from, goal, fixed).unwrap_or(direct),
         };
         let most = direct.length + DETOUR_ALLOWANCE * self.clearance();
-        let is_taken = |round: &Geodesic| {
-            round.length <= most && self.may_change_over_along(from, round)
-        };
+        let is_taken =
+            |round: &Geodesic| round.length <= most && self.may_change_over_along(from, round);
         space.detour(from, goal, parked).filter(is_taken).unwrap_or(direct)
     }
 

@@ -96,11 +96,12 @@ impl Conclusions {
                 self.exchanging.extend([(mover, step), (parked, step)]);
             }
             // A path that was seen before may be given up untold.
-            MissionEvent::TaskWithdrawn { .. }
-            | MissionEvent::TaskReannounced { .. }
-            | MissionEvent::ElectionRepeated { .. } => {
-                self.early.clear();
-                self.early_movers.clear();
+            MissionEvent::TaskWithdrawn { .. } | MissionEvent::ElectionRepeated { .. } => {
+                self.forget_early();
+            }
+            MissionEvent::TaskReannounced { .. } => {
+                self.forget_early();
+                (self.ended, self.at_rest) = (None, None);
             }
             _ => {}
         }
@@ -126,6 +127,11 @@ impl Conclusions {
                 Err(Dispute::of(Property::ActiveTeam, &[robot], sentence))
             }
         }
+    }
+
+    fn forget_early(&mut self) {
+        self.early.clear();
+        self.early_movers.clear();
     }
 
     /// The ledger after an event.

@@ -290,7 +290,8 @@ impl Ledger {
     fn reannounce(&mut self, task: usize, gone: &[usize], joined: &[usize]) -> Result<(), Dispute> {
         let is_pursued = self.task().is_none_or(|pursued| pursued == task);
         let is_over = task >= self.announced || self.closed.contains(&task);
-        let has_cause = !gone.is_empty() || !joined.is_empty();
+        // Robots of a task that is over may be free now.
+        let has_cause = !gone.is_empty() || !joined.is_empty() || !self.closed.is_empty();
         if is_over || !is_pursued || !has_cause || gone.iter().any(|robot| joined.contains(robot)) {
             let sentence = format!(
                 "task {task} is announced again without robots {gone:?} and to robots {joined:?}, while {} is \

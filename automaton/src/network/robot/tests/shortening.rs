@@ -125,7 +125,8 @@ fn no_way_is_shortened_that_is_contradicted_or_while_a_path_is_sought() {
     let lost = beacon(2, west(0.8), fixed(14, 15), &[]);
     assert_eq!(choice(holder(Strategy::Eager), [parent(), lost]), None, "it knows no way");
     let mut recruiting = holder(Strategy::Eager);
-    let election = RecruitElection { before: None, standstill: None, ahead: false, stretched: false };
+    let election =
+        RecruitElection { before: None, standstill: None, ahead: false, stretched: false };
     recruiting.mission = Current::new(Mission::RecruitElection(election));
     assert_eq!(choice(recruiting, [parent(), grandparent(0.8)]), None);
 }
