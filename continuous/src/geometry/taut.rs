@@ -5,6 +5,7 @@
 //! its own side is worth.
 
 use super::segment::side;
+use super::segment::Segment;
 use super::{FreeSpace, Geodesic};
 use crate::Point;
 
@@ -46,6 +47,13 @@ impl FreeSpace {
     /// does: the part of the hull of the obstacles in the triangle that faces `corner`.
     fn hull(&self, from: Point, corner: Point, to: Point) -> Vec<Point> {
         let apart = |one: Point, other: Point| (one - other).norm() > self.tolerance();
+        // Between a way and the same way back there is nothing: which side of the line an obstacle is on does not matter.
+        let is_on_way = |place: Point, end: Point| {
+            Segment::new(corner, end).distance(place) <= self.tolerance()
+        };
+        if is_on_way(from, to) || is_on_way(to, from) {
+            return Vec::new();
+        }
         let mut obstacles = self.corners().iter().filter(|known| !apart(known.at, corner));
         if obstacles.any(|obstacle| obstacle.lies_between(from, to)) {
             return vec![corner];

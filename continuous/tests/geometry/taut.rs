@@ -56,6 +56,27 @@ fn a_way_there_and_back_in_line_with_corners_comes_to_nothing() {
     assert!((taut.length - (to - from).norm()).abs() < 1e-9, "{taut:?}");
 }
 
+/// Along the edges of two holes in line, and back to beyond where it began.
+#[test]
+fn a_way_back_along_an_edge_comes_to_nothing() {
+    let boundary = ring(&[(0.0, 0.0), (1.9, 0.0), (1.9, 1.3), (0.0, 1.3)]);
+    let hole = |left: f64, right: f64| {
+        ring(&[(left, 0.74506), (right, 0.74506), (right, 0.77506), (left, 0.77506)])
+    };
+    let holes = vec![hole(0.93061, 1.25443), hole(1.37785, 1.48869)];
+    let space = FreeSpace::new(&Workspace::new(boundary, holes).unwrap(), 0.01).unwrap();
+    let (end, to) = (Point::new(1.52, 0.84), Point::new(1.147_341_98, 0.735_058_1));
+    for x in [1.267_848_1, 1.277_848_1] {
+        let from = Point::new(x, 0.735_058_1);
+        let corners = [space.geodesic(from, end), space.geodesic(end, to)];
+        let corners = corners.map(|way| way.unwrap().waypoints);
+        for way in [corners.concat(), vec![Point::new(1.498_691_9, 0.735_058_1), to]] {
+            let taut = space.taut(from, &way);
+            assert!((taut.length - space.distance(from, to)).abs() < 1e-6, "{taut:?}");
+        }
+    }
+}
+
 proptest! {
     /// Without holes there is one way only, and a path over any place is the shortest once it is taut.
     #[test]
