@@ -30,8 +30,12 @@ pub fn end_heard() -> Guard {
 /// The robots that take part now are not those of the elections for its task, or may not be in a while; or some are
 /// free that were not, or may be in a while.
 fn may_ask_others() -> Predicate {
-    let are_free_soon = proposition("awaits_end") | proposition("has_freed");
-    proposition("misses_robot") | proposition("has_newcomers") | may_come() | are_free_soon
+    proposition("misses_robot") | proposition("has_newcomers") | may_come() | may_free_robots()
+}
+
+/// Robots have become free since it announced its task, or will.
+fn may_free_robots() -> Predicate {
+    proposition("awaits_end") | proposition("has_freed")
 }
 
 /// Robots take part that do not in the elections for its task, or have become free since it was announced.
@@ -155,7 +159,9 @@ pub fn announces_again() -> Guard {
 
 /// So it is while the election is under way, or nobody bids in it that could go, or it goes unanswered.
 pub fn elects_again() -> Guard {
-    let unanswered = goes_unanswered() & another_time();
+    // Those who have given up answer no more.
+    let have_given_up = proposition("has_failed") & may_free_robots();
+    let unanswered = goes_unanswered() & another_time() & !have_given_up;
     let in_vain = proposition("hears_failure") | lacks_bid();
     let others = in_vain & has_others() | lacks_bid() & has_found_way();
     let again = proposition("misses_robot") | others | unanswered;

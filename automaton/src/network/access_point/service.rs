@@ -88,6 +88,8 @@ crate::observed! {
         hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
         /// So it says, and that a task is given up.
         hears_failure: point.hears_failure(),
+        /// It has heard so since it announced the task.
+        has_failed: point.failed_in.is_some(),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
