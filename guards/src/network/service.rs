@@ -27,10 +27,11 @@ pub fn end_heard() -> Guard {
     named("end heard", proposition("hears_end") & !may_go_on)
 }
 
-/// The robots that take part now are not those of the elections for its task, or may not be in a while; or some are
-/// free that were not, or may be in a while.
+/// The robots that take part now are not those of the elections for its task, or may not be in a while; or it is given up
+/// for want of robots, and some are free that were not, or will be.
 fn may_ask_others() -> Predicate {
-    proposition("misses_robot") | proposition("has_newcomers") | may_come() | may_free_robots()
+    let may_be_freed = proposition("hears_want") & may_free_robots();
+    proposition("misses_robot") | proposition("has_newcomers") | may_come() | may_be_freed
 }
 
 /// Robots have become free since it announced its task, or will.
@@ -38,10 +39,9 @@ fn may_free_robots() -> Predicate {
     proposition("awaits_end") | proposition("has_freed")
 }
 
-/// Robots take part that do not in the elections for its task, or have become free since it was announced.
-fn has_others() -> Predicate {
-    let are_free = proposition("has_freed") & !proposition("awaits_retirements");
-    proposition("has_newcomers") | are_free
+/// It is given up for want of robots, and those that were not free are.
+fn has_freed() -> Predicate {
+    proposition("hears_want") & proposition("has_freed") & !proposition("awaits_retirements")
 }
 
 /// Robots may take part in a while that do not now.
@@ -152,7 +152,7 @@ pub fn no_answer() -> Guard {
 /// A robot that takes part in the elections for the task is gone, and others are left; or they have given the
 /// task up, and others take part now.
 pub fn announces_again() -> Guard {
-    let others = proposition("hears_failure") & has_others();
+    let others = proposition("hears_failure") & proposition("has_newcomers") | has_freed();
     let again = proposition("misses_robot") | others;
     named("announces again", pursues() & again & has_robots())
 }
@@ -160,11 +160,11 @@ pub fn announces_again() -> Guard {
 /// So it is while the election is under way, or nobody bids in it that could go, or it goes unanswered.
 pub fn elects_again() -> Guard {
     // Those who have given up answer no more.
-    let have_given_up = proposition("has_failed") & may_free_robots();
+    let have_given_up = proposition("wants_robots") & may_free_robots();
     let unanswered = goes_unanswered() & another_time() & !have_given_up;
     let in_vain = proposition("hears_failure") | lacks_bid();
-    let others = in_vain & has_others() | lacks_bid() & has_found_way();
-    let again = proposition("misses_robot") | others | unanswered;
+    let others = in_vain & proposition("has_newcomers") | lacks_bid() & has_found_way();
+    let again = proposition("misses_robot") | others | has_freed() | unanswered;
     named("announces again", pursues() & again & has_robots())
 }
 

@@ -131,7 +131,7 @@ impl AccessPoint {
             // Constant: the request comes before the first state, and does not change. No task of it ends.
             closed_in: _,
             announced_in: _,
-            failed_in: _,
+            given_up_in: _,
             site: _,
             position: _,
             requested: _,

@@ -106,8 +106,8 @@ pub struct AccessPoint {
     closed_in: Option<u32>,
     /// The control period in which the task was announced last.
     announced_in: u32,
-    /// The control period in which it has heard that the task is given up.
-    failed_in: Option<u32>,
+    /// The control period in which it has heard that the task is given up for want of robots.
+    given_up_in: Option<u32>,
     /// What the user has asked for.
     requested: Option<Order>,
     /// Its state in the service of the tasks, and its stage in the control period.
@@ -162,7 +162,7 @@ impl AccessPoint {
             closed: Arc::default(),
             closed_in: None,
             announced_in: 0,
-            failed_in: None,
+            given_up_in: None,
             requested: None,
             service: Current::new(Serving::Gathering(Gathering)),
             rounds: Current::new(Rounds::Resting(Resting)),
@@ -291,8 +291,8 @@ impl AccessPoint {
         if self.beacons().fold(false, hear) {
             // What it does not take up now it hears again.
             (self.newest, self.has_news) = (Some(newest), true);
-            if self.hears_failure() {
-                self.failed_in.get_or_insert(self.period);
+            if self.hears_want() {
+                self.given_up_in.get_or_insert(self.period);
             }
             self.jump()?;
             self.newest = None;
@@ -343,7 +343,7 @@ impl AccessPoint {
         self.crossing.clear();
         if let Notice::Task(announcement) = &**bulletin.notice() {
             self.learn((id, announcement.clone()));
-            (self.announced_in, self.failed_in) = (self.period, None);
+            (self.announced_in, self.given_up_in) = (self.period, None);
         }
         match **bulletin.notice() {
             Notice::Task(_) | Notice::Call { .. } => {
@@ -386,7 +386,7 @@ impl AccessPoint {
 
     /// Whether it waits for them to become redundant, and for the robots of a team that has given up.
     fn awaits_retirements(&self) -> bool {
-        let ends = self.closed_in.into_iter().chain(self.failed_in);
+        let ends = self.closed_in.into_iter().chain(self.given_up_in);
         self.has_freed() && ends.max().is_some_and(|end| self.period < self.retired_by(end))
     }
 

@@ -88,8 +88,10 @@ crate::observed! {
         hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
         /// So it says, and that a task is given up.
         hears_failure: point.hears_failure(),
+        /// So it says for want of robots.
+        hears_want: point.hears_want(),
         /// It has heard so since it announced the task.
-        has_failed: point.failed_in.is_some(),
+        wants_robots: point.given_up_in.is_some(),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
@@ -184,9 +186,15 @@ impl AccessPoint {
     }
 
     /// Whether it hears that the mission has ended with a task that is given up.
-    pub(super) fn hears_failure(&self) -> bool {
+    fn hears_failure(&self) -> bool {
         let heard = self.heard_notice();
         matches!(heard, Some(Notice::Ended { outcome, .. }) if outcome.is_given_up())
+    }
+
+    /// Whether it hears that the mission has ended for want of robots.
+    pub(super) fn hears_want(&self) -> bool {
+        let heard = self.heard_notice();
+        matches!(heard, Some(Notice::Ended { outcome: Outcome::InsufficientRobots, .. }))
     }
 
     /// The robots that take part in the elections for its task.
