@@ -184,7 +184,8 @@ impl Property {
                  every sender needs at most its whole time."
             }
             Property::Connectivity => {
-                "From every robot a path of links with T·R > 0 leads to an access point."
+                "From every robot that has packets to send, of its own or of others, a path of links \
+                 with T·R > 0 leads to an access point."
             }
             Property::SingleParent => "Every robot of the tree has exactly one parent.",
             Property::RootedTree => {
