@@ -41,7 +41,8 @@ fn may_free_robots() -> Predicate {
 
 /// It is given up for want of robots, and those that were not free are.
 fn has_freed() -> Predicate {
-    proposition("hears_want") & proposition("has_freed") & !proposition("awaits_retirements")
+    let wants_robots = proposition("hears_failure") & proposition("hears_want");
+    wants_robots & proposition("has_freed") & !proposition("awaits_retirements")
 }
 
 /// Robots may take part in a while that do not now.
@@ -159,9 +160,7 @@ pub fn announces_again() -> Guard {
 
 /// So it is while the election is under way, or nobody bids in it that could go, or it goes unanswered.
 pub fn elects_again() -> Guard {
-    // Those who have given up answer no more.
-    let have_given_up = proposition("wants_robots") & may_free_robots();
-    let unanswered = goes_unanswered() & another_time() & !have_given_up;
+    let unanswered = goes_unanswered() & another_time();
     let in_vain = proposition("hears_failure") | lacks_bid();
     let others = in_vain & proposition("has_newcomers") | lacks_bid() & has_found_way();
     let again = proposition("misses_robot") | others | has_freed() | unanswered;
@@ -182,7 +181,9 @@ fn has_robots() -> Predicate {
 fn goes_unanswered() -> Predicate {
     let overdue = variable("waited").more_than(variable("longest_wait"));
     let all_heard = !proposition("expects_elector") & !proposition("misses_robot");
-    !proposition("election_over") & overdue & all_heard
+    // Those who have given up for want of robots answer no more.
+    let have_given_up = proposition("wants_robots") & may_free_robots();
+    !proposition("election_over") & overdue & all_heard & !have_given_up
 }
 
 /// A task is pursued, and those are known who take part in its elections.
