@@ -242,7 +242,7 @@ fn a_label_is_taken_when_any_transition_on_it_has_to_be() {
     for transitions in [[free(), forced()], [forced(), free()]] {
         let both = built(transitions.into_iter().fold(clock(), |parts, one| parts.transition(one)));
         let pair = Composition::builder().add("one", &both).add("other", &other).label("go");
-        let trajectory = pair.build().expect("the parts fit").run(1.5).expect("it can be run");
+        let trajectory = pair.build().expect("the parts fit").run(1.0).expect("it can be run");
         let times: Vec<f64> = trajectory.jumps().iter().map(|jump| jump.at.t).collect();
         assert_eq!(times, [1.0]);
     }
