@@ -40,7 +40,7 @@ fn may_free_robots() -> Predicate {
 }
 
 /// It is given up for want of robots, and those that were not free are.
-fn has_freed() -> Predicate {
+fn may_ask_freed() -> Predicate {
     let wants_robots = proposition("hears_failure") & proposition("hears_want");
     wants_robots & proposition("has_freed") & !proposition("awaits_retirements")
 }
@@ -153,7 +153,7 @@ pub fn no_answer() -> Guard {
 /// A robot that takes part in the elections for the task is gone, and others are left; or they have given the
 /// task up, and others take part now.
 pub fn announces_again() -> Guard {
-    let others = proposition("hears_failure") & proposition("has_newcomers") | has_freed();
+    let others = proposition("hears_failure") & proposition("has_newcomers") | may_ask_freed();
     let again = proposition("misses_robot") | others;
     named("announces again", pursues() & again & has_robots())
 }
@@ -163,7 +163,7 @@ pub fn elects_again() -> Guard {
     let unanswered = goes_unanswered() & another_time();
     let in_vain = proposition("hears_failure") | lacks_bid();
     let others = in_vain & proposition("has_newcomers") | lacks_bid() & has_found_way();
-    let again = proposition("misses_robot") | others | has_freed() | unanswered;
+    let again = proposition("misses_robot") | others | may_ask_freed() | unanswered;
     named("announces again", pursues() & again & has_robots())
 }
 

@@ -99,9 +99,10 @@ impl Conclusions {
             MissionEvent::TaskWithdrawn { .. } | MissionEvent::ElectionRepeated { .. } => {
                 self.forget_early();
             }
-            MissionEvent::TaskReannounced { .. } => {
+            // So may the mission be, until robots are free.
+            MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => {
                 self.forget_early();
-                (self.ended, self.at_rest) = (None, None);
+                (self.ended, self.at_rest, self.ahead) = (None, None, None);
             }
             _ => {}
         }
