@@ -300,7 +300,7 @@ impl RateProgram {
     }
 }
 
-/// What a formula takes roots and other broken powers of, in all of its cases.
+/// What a formula takes roots and other broken powers of, whatever its cases: none within a case.
 fn radicands(formula: &Expression) -> Vec<&Expression> {
     let (mut found, mut parts) = (Vec::new(), vec![formula]);
     while let Some(part) = parts.pop() {

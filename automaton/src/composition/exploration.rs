@@ -187,14 +187,15 @@ impl Explorer<'_> {
     fn leave(&mut self, number: usize) -> Result<(), ExplorationError> {
         let State { locations, values, .. } = self.states[number].clone();
         let standing = Standing::new(self.composition, &locations);
-        let mut jumps = standing.all(&values)?;
-        let is_forced = |leaving: &Leaving| leaving.urgency.is_forced();
-        let forced = jumps.iter().map(|jump| standing.is_for_one(jump, &values, is_forced));
-        let forced = forced.collect::<Result<Vec<bool>, _>>()?;
-        if forced.contains(&true) {
-            let mut forced = forced.into_iter();
-            jumps.retain(|_| forced.next() == Some(true));
+        let (mut forced, mut free) = (Vec::new(), Vec::new());
+        for jump in standing.all(&values)? {
+            let is_forced = |leaving: &Leaving| leaving.urgency.is_forced();
+            match standing.is_for_one(&jump, &values, is_forced)? {
+                true => forced.push(jump),
+                false => free.push(jump),
+            }
         }
+        let jumps = if forced.is_empty() { free } else { forced };
         self.states[number].leaving = jumps.len();
         self.transitions += jumps.len();
         for jump in jumps {

@@ -50,16 +50,14 @@ impl Kinks {
                     parts.extend([left, right, &choice.then, &choice.otherwise]);
                     found.extend(Kinks::along(&(left - right), [0.0].into(), true, names)?);
                 }
-                Expression::Lookup(table, place)
-                    if table.interpolation() == Interpolation::Flat =>
-                {
-                    parts.push(place);
-                }
                 Expression::Lookup(table, place) => {
                     parts.push(place);
-                    let places = table.points().iter().map(|point| point.0).collect();
-                    let are_jumps = table.interpolation() != Interpolation::Linear;
-                    found.extend(Kinks::along(place, places, are_jumps, names)?);
+                    // A flat table is 0 on both sides of its points.
+                    if table.interpolation() != Interpolation::Flat {
+                        let places = table.points().iter().map(|point| point.0).collect();
+                        let are_jumps = table.interpolation() == Interpolation::Steps;
+                        found.extend(Kinks::along(place, places, are_jumps, names)?);
+                    }
                 }
                 _ => {}
             }

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use pleach_continuous::flow::{
     Curve, Doubt, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Onset, Piece, Tolerances,
 };
-use pleach_guards::{Enclosure, Expression, Interval};
+use pleach_guards::{Enclosure, Expression, Interval, Tracker};
 
+use super::Component;
 use super::field::{Field, Row};
 use super::halving::middle;
 use super::hold::{Hold, Unclear};
@@ -426,12 +427,8 @@ impl<'a> Solver<'a> {
             let Some(tracker) = &rate.tracker else { continue };
             let mut spans = vec![(piece.start(), piece.end())];
             while let Some((from, to)) = spans.pop() {
-                piece.enclose(from, to, &mut self.enclosures);
-                let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
-                let mut margins = tracker.comparisons().iter().map(|comparison| {
-                    comparison.margin(&self.enclosures, &component.places, half).range
-                });
-                if margins.all(|range| range.lower().is_finite() && range.upper().is_finite()) {
+                let range = self.range(tracker, component, piece, [from, to]);
+                if range.lower().is_finite() && range.upper().is_finite() {
                     continue;
                 }
                 let Some(middle) = middle(from, to).filter(|_| !is_crawling(from, to)) else {
@@ -448,21 +445,29 @@ impl<'a> Solver<'a> {
         Ok(())
     }
 
-    /// No root is taken of a negative number in the piece. The span in which it may be lowest is halved, a limited
-    /// number of times: one that only comes to zero, as the level of a tank does, is not negative anywhere.
+    /// What the margin of a condition of a component can be in a span of a piece.
+    fn range(
+        &mut self,
+        condition: &Tracker,
+        component: &Component,
+        piece: &Piece,
+        [from, to]: [f64; 2],
+    ) -> Interval {
+        piece.enclose(from, to, &mut self.enclosures);
+        let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
+        let margins = condition.comparisons().iter();
+        let ranges = margins.map(|it| it.margin(&self.enclosures, &component.places, half).range);
+        ranges.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
+    }
+
+    /// No root is taken of a negative number in the piece. A number that only comes to zero, as the level of a tank
+    /// does, is not negative anywhere.
     fn check_radicands(&mut self, piece: &Piece) -> Result<(), (f64, String)> {
         let whole = [piece.start(), piece.end()];
         for (component, rate) in self.field.formulas() {
             for radicand in &rate.radicands {
-                let mut range = |[from, to]: [f64; 2]| {
-                    piece.enclose(from, to, &mut self.enclosures);
-                    let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
-                    let places = &component.places;
-                    let margins = radicand.comparisons().iter();
-                    let ranges = margins.map(|it| it.margin(&self.enclosures, places, half).range);
-                    ranges.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
-                };
-                let Some(end) = negative(whole, &mut range) else { continue };
+                let mut range = |span| self.range(radicand, component, piece, span);
+                let Some(end) = end_before_negative(whole, &mut range) else { continue };
                 let name = component.blueprint.coordinates[rate.coordinate];
                 let reason = format!("a root in the rate of `{name}` has no value any more,");
                 return Err((end, reason));
@@ -487,28 +492,13 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Whether a span of time is hardly longer than rounding.
-/// Up to when a number that is bounded by `range` over each span is not negative, if it is negative later in a span of
-/// time, as far as so many halvings show.
-fn negative(whole: [f64; 2], range: &mut dyn FnMut([f64; 2]) -> Interval) -> Option<f64> {
-    let mut spans = vec![(range(whole), whole)];
-    let mut found = None;
-    for _ in 0..MOST_DIPS {
-        let lowest =
-            |one: &(Interval, _), other: &(Interval, _)| one.0.lower().total_cmp(&other.0.lower());
-        let at = (0..spans.len()).min_by(|&one, &other| lowest(&spans[one], &spans[other]))?;
-        let (bounds, [from, to]) = spans.swap_remove(at);
-        if bounds.lower() >= 0.0 {
-            return None;
-        }
-        if bounds.upper() < 0.0 {
-            found = Some(from);
-            break;
-        }
-        let middle = middle(from, to)?;
-        spans.extend([[from, middle], [middle, to]].map(|span| (range(span), span)));
-    }
-    let (mut before, mut after) = (whole[0], found?);
+/// The time up to which a number is not known to be negative, if it is negative somewhere in a span of time. `range`
+/// bounds the number over a span.
+fn end_before_negative(
+    whole: [f64; 2],
+    range: &mut dyn FnMut([f64; 2]) -> Interval,
+) -> Option<f64> {
+    let (mut before, mut after) = (whole[0], time_of_negative(whole, range)?);
     while let Some(time) = middle(before, after).filter(|_| !is_crawling(before, after)) {
         match range([time, after]).upper() < 0.0 {
             true => after = time,
@@ -518,6 +508,27 @@ fn negative(whole: [f64; 2], range: &mut dyn FnMut([f64; 2]) -> Interval) -> Opt
     Some(before)
 }
 
+/// A time at which the number is negative. The span in which the number may be lowest is halved, at most
+/// [`MOST_DIPS`] times.
+fn time_of_negative(whole: [f64; 2], range: &mut dyn FnMut([f64; 2]) -> Interval) -> Option<f64> {
+    let mut spans = vec![(range(whole), whole)];
+    for _ in 0..MOST_DIPS {
+        let lower = |at: usize| spans[at].0.lower();
+        let lowest = (0..spans.len()).min_by(|&one, &other| lower(one).total_cmp(&lower(other)))?;
+        let (bounds, [from, to]) = spans.swap_remove(lowest);
+        if bounds.lower() >= 0.0 {
+            return None;
+        }
+        if bounds.upper() < 0.0 {
+            return Some(from);
+        }
+        let middle = middle(from, to)?;
+        spans.extend([[from, middle], [middle, to]].map(|span| (range(span), span)));
+    }
+    None
+}
+
+/// Whether a span of time is hardly longer than rounding.
 fn is_crawling(from: f64, to: f64) -> bool {
     to - from <= CRAWLING * to.abs()
 }

@@ -4,8 +4,7 @@
 //! of no use, for a robot whose link leads round a hole on the other side. Pulling a path taut tells what
 //! its own side is worth.
 
-use super::segment::Segment;
-use super::segment::side;
+use super::segment::{Segment, side};
 use super::{FreeSpace, Geodesic};
 use crate::Point;
 

@@ -209,7 +209,7 @@ mod tests {
         Arc::new(Template::boxes(1))
     }
 
-    /// Of so many variables that few symbols are left for errors, or none, or not even one for each variable.
+    /// With this many variables, few symbols are left for errors, none are, or there are fewer symbols than variables.
     #[test]
     fn symbols_of_many_variables_are_no_more_than_there_are() {
         let settings = Settings { step: 0.1, order: 2, ..Settings::default() };

@@ -85,7 +85,7 @@ crate::observed! {
             Some(Notice::Serviced { .. } | Notice::Withdrawn { .. })
         ),
         /// The newest notice received says that the mission has ended.
-        hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
+        hears_end: point.heard_end().is_some(),
         /// So it says, and that a task is given up.
         hears_failure: point.hears_failure(),
         /// So it says for want of robots.
@@ -185,16 +185,22 @@ impl AccessPoint {
         self.newest.as_ref().map(|bulletin| &**bulletin.notice())
     }
 
+    /// How the mission has ended, as it hears.
+    fn heard_end(&self) -> Option<Outcome> {
+        match self.heard_notice()? {
+            Notice::Ended { outcome, .. } => Some(*outcome),
+            _ => None,
+        }
+    }
+
     /// Whether it hears that the mission has ended with a task that is given up.
     fn hears_failure(&self) -> bool {
-        let heard = self.heard_notice();
-        matches!(heard, Some(Notice::Ended { outcome, .. }) if outcome.is_given_up())
+        self.heard_end().is_some_and(Outcome::is_given_up)
     }
 
     /// Whether it hears that the mission has ended for want of robots.
     pub(super) fn hears_want(&self) -> bool {
-        let heard = self.heard_notice();
-        matches!(heard, Some(Notice::Ended { outcome: Outcome::InsufficientRobots, .. }))
+        self.heard_end() == Some(Outcome::InsufficientRobots)
     }
 
     /// The robots that take part in the elections for its task.
@@ -287,18 +293,26 @@ impl AccessPoint {
 
     /// Whether the user will ask for another task, or one is serviced that is to end.
     fn expects_task(&self) -> bool {
-        let is_to_end =
-            |(task, errand): (usize, Errand)| errand.lasts.is_some() && self.is_open(task);
         self.requested.as_ref().is_some_and(|order| order.continues)
-            || self.errands().any(is_to_end)
+            || self.tasks_to_end().next().is_some()
     }
 
     /// Whether a task that is serviced is to end.
     fn awaits_end(&self) -> bool {
-        let pursued = self.announced().map(|announced| announced.task);
+        let pursued = self.pursued_task();
         let is_serviced = |task: usize| task < self.known_tasks.len() && pursued != Some(task);
-        let mut errands = self.errands().filter(|&(task, _)| is_serviced(task));
-        errands.any(|(task, errand)| errand.lasts.is_some() && self.is_open(task))
+        self.tasks_to_end().any(is_serviced)
+    }
+
+    /// The tasks asked for that last for a time, and are not over.
+    fn tasks_to_end(&self) -> impl Iterator<Item = usize> {
+        let lasting = self.errands().filter(|(_, errand)| errand.lasts.is_some());
+        lasting.map(|(task, _)| task).filter(|&task| self.is_open(task))
+    }
+
+    /// The task that it pursues, if it knows who takes part.
+    fn pursued_task(&self) -> Option<usize> {
+        self.announced().map(|announced| announced.task)
     }
 
     /// Whether the task that is pursued has been taken back.
@@ -310,7 +324,7 @@ impl AccessPoint {
 
     /// The first task that is not pursued and is over, with what has become of it.
     fn next_closing(&self) -> Option<(usize, MissionEvent)> {
-        let pursued = self.announced().map(|announced| announced.task);
+        let pursued = self.pursued_task();
         let mut open =
             self.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
         open.find_map(|(task, errand)| {

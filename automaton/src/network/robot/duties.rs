@@ -212,16 +212,18 @@ impl Robot {
     /// Whether a leader is bound to its post no more: another task is announced, or its own again; or the mission is
     /// given up, and tasks have ended, so that it may go on once their robots are free.
     pub(super) fn is_unbound(&self) -> bool {
-        use MissionStep::{Blocked, Ended};
-        let is_given_up =
-            || self.phase() == Phase::Ended || self.takes_step(Ended) || self.takes_step(Blocked);
-        self.is_superseded() || !self.closed.is_empty() && is_given_up()
+        let has_ended = self.phase() == Phase::Ended || self.ends_now();
+        self.is_superseded() || has_ended && !self.closed.is_empty()
     }
 
     /// Whether the primary team is dissolved.
     pub(super) fn is_dissolved(&self) -> bool {
-        use MissionStep::{Blocked, Ended};
-        self.gives_path_up() || self.takes_step(Ended) || self.takes_step(Blocked)
+        self.gives_path_up() || self.ends_now()
+    }
+
+    /// Whether it learns now that the mission has ended, or ends it.
+    fn ends_now(&self) -> bool {
+        self.takes_step(MissionStep::Ended) || self.takes_step(MissionStep::Blocked)
     }
 
     /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.

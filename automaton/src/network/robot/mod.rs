@@ -268,7 +268,7 @@ pub struct Robot {
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
-    /// Whether its link has made it take the way that it is on.
+    /// Whether it follows a way that its link requires.
     goes_by_link: bool,
     proposal: Option<Segment>,
     /// Its proposal as it has been told.

@@ -158,7 +158,7 @@ impl Robot {
         Some(space.taut(self.position, &corners))
     }
 
-    /// Whether it is on a way that its link has made it take, and gets on.
+    /// Whether it follows a way that its link requires, and is making progress.
     fn keeps_way_of_link(&self) -> bool {
         self.goes_by_link && self.still_periods < PATIENCE_WITH_WAYS
     }

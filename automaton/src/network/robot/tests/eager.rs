@@ -3,7 +3,6 @@
 use pleach_discrete::network::{Agreement, Election, Phase};
 
 use super::super::super::duty::{Hop, PathPlace};
-use super::super::super::mission::RecruitElection;
 use super::super::super::scenario::Strategy;
 use super::*;
 
@@ -72,16 +71,12 @@ fn nothing_is_foreseen_while_p1_may_come_to_attach_elsewhere() {
     assert_eq!(phase(child), Phase::Advance, "a redundant robot has yet to leave it");
 }
 
-const fn call(ahead: bool, stretched: bool) -> RecruitElection {
-    RecruitElection { before: None, standstill: None, ahead, stretched }
-}
-
 /// No robot of the roster can come, as their tokens say.
 fn caller(ahead: bool) -> Robot {
     let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
     robot.is_told(Notice::Call { caller: 0, releases_leader: false });
     robot.stretched = true;
-    robot.mission = Current::new(Mission::RecruitElection(call(ahead, true)));
+    robot.seeks_recruit(ahead, true);
     let mut election = Election::new(robot.notice_id());
     (0..ROBOTS).for_each(|other| election.place(other, None));
     robot.election = Some(Arc::new(election));
@@ -106,7 +101,7 @@ fn a_call_ahead_that_is_in_vain_ends_nothing_and_is_not_repeated() {
 fn a_call_ahead_that_is_in_vain_is_repeated_by_nobody() {
     let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
     robot.is_told(Notice::Call { caller: 1, releases_leader: false });
-    robot.mission = Current::new(Mission::RecruitElection(call(false, false)));
+    robot.seeks_recruit(false, false);
     robot.is_told(Notice::Advance { joined: None });
     assert_eq!(next_phase(&mut robot), Phase::Advance);
     robot.review_team();
@@ -119,7 +114,7 @@ fn a_team_whose_links_have_been_stretched_calls_ahead_again() {
     let next = |stretched_before: bool| {
         let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
         robot.is_told(Notice::Call { caller: 1, releases_leader: false });
-        robot.mission = Current::new(Mission::RecruitElection(call(false, stretched_before)));
+        robot.seeks_recruit(false, stretched_before);
         robot.stretched = true;
         robot.is_told(Notice::Advance { joined: None });
         assert_eq!(next_phase(&mut robot), Phase::Advance);
@@ -132,7 +127,7 @@ fn a_team_whose_links_have_been_stretched_calls_ahead_again() {
 fn the_team_goes_on_while_a_recruit_is_sought() {
     let goal = |strategy, away: f64| {
         let mut robot = leader(strategy, away);
-        robot.mission = Current::new(Mission::RecruitElection(call(false, false)));
+        robot.seeks_recruit(false, false);
         robot.measures();
         robot.goal()
     };
@@ -147,7 +142,7 @@ fn the_team_goes_on_while_a_recruit_is_sought() {
 fn a_member_that_goes_on_is_parked_once_it_stands_still() {
     let is_parked = |strategy, still: u32| {
         let mut robot = leader(strategy, 3.0);
-        robot.mission = Current::new(Mission::RecruitElection(call(false, false)));
+        robot.seeks_recruit(false, false);
         robot.still_periods = still;
         robot.is_parked()
     };

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
-use super::super::super::mission::{Idle, LeaderElection, RecruitElection, Standstill};
+use super::super::super::mission::{Idle, LeaderElection, Standstill};
 use super::super::super::roll::{Absent, Wreck};
 use super::*;
 
@@ -161,12 +161,7 @@ fn called(own: Post, releases_leader: bool) -> Robot {
     robot.holds(own);
     robot.is_told(Notice::Call { caller: 5, releases_leader });
     robot.knows_task(east(3.0));
-    robot.mission = Current::new(Mission::RecruitElection(RecruitElection {
-        before: None,
-        standstill: None,
-        ahead: false,
-        stretched: false,
-    }));
+    robot.seeks_recruit(false, false);
     robot.election = Some(Arc::new(Election::new(robot.notice_id())));
     robot
 }

@@ -26,7 +26,7 @@ use serde_json::json;
 
 use super::super::beacon::{Announcement, Beacon, Notice};
 use super::super::duty::{Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station};
-use super::super::mission::{Advance, Ended, Mission, Shift};
+use super::super::mission::{Advance, Ended, Mission, RecruitElection, Shift};
 use super::super::roll::Roll;
 use super::super::scenario::{AccessPoint, Scenario};
 use super::super::shared::Shared;
@@ -175,6 +175,13 @@ impl Robot {
         self.mission = Current::new(Mission::Advance(Advance { path: None, in_vain: false }));
         self.knows_task(place);
         self.target = Some(place);
+    }
+
+    /// A recruit is sought, and this robot has called for it ahead of a standstill or not at all; links had been
+    /// stretched before, or not.
+    fn seeks_recruit(&mut self, ahead: bool, stretched: bool) {
+        let election = RecruitElection { before: None, standstill: None, ahead, stretched };
+        self.mission = Current::new(Mission::RecruitElection(election));
     }
 
     /// The task announced is at `place`, and all take part.

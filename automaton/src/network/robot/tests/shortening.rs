@@ -1,7 +1,6 @@
 //! Ways of fixed posts that are made shorter, so that nodes on them become redundant.
 
 use super::super::super::duty::Junction;
-use super::super::super::mission::RecruitElection;
 use super::super::super::scenario::Strategy;
 use super::*;
 
@@ -125,9 +124,7 @@ fn no_way_is_shortened_that_is_contradicted_or_while_a_path_is_sought() {
     let lost = beacon(2, west(0.8), fixed(14, 15), &[]);
     assert_eq!(choice(holder(Strategy::Eager), [parent(), lost]), None, "it knows no way");
     let mut recruiting = holder(Strategy::Eager);
-    let election =
-        RecruitElection { before: None, standstill: None, ahead: false, stretched: false };
-    recruiting.mission = Current::new(Mission::RecruitElection(election));
+    recruiting.seeks_recruit(false, false);
     assert_eq!(choice(recruiting, [parent(), grandparent(0.8)]), None);
 }
 
