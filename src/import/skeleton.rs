@@ -4,8 +4,7 @@ use super::gaps;
 use super::{MapPlaces, Plan};
 use crate::automaton::network::Site;
 use crate::automaton::network::scenario::{
-    AccessPoint, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Settings, Task,
-    ValidScenario,
+    AccessPoint, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
 };
 use crate::continuous::Point;
 use crate::figures::quantity;
@@ -116,7 +115,7 @@ pub fn skeleton(
     let mut scenario = outline(plan, choices);
     let site = Site::new(&scenario)?;
     let mut notes: Vec<String> = site.repairs.iter().map(ToString::to_string).collect();
-    notes.extend(narrow_passages(&scenario, &site.settings));
+    notes.extend(narrow_passages(&scenario, &site));
 
     let named = places_named(plan, &scenario);
     let places = Lattice::of(&site);
@@ -224,9 +223,9 @@ fn places_named(plan: &Plan, scenario: &Scenario) -> MapPlaces {
 
 /// The passages that are too narrow, the widest by their places: a robot that is a little smaller
 /// gets through those, and clutter makes many that are narrower.
-fn narrow_passages(scenario: &Scenario, settings: &Settings) -> Vec<String> {
-    let width = 2.0 * settings.clearance;
-    let gaps = gaps::narrower_than(&scenario.workspace, width);
+fn narrow_passages(scenario: &Scenario, site: &Site) -> Vec<String> {
+    let width = 2.0 * site.settings.clearance;
+    let gaps = gaps::narrower_than(&site.workspace, width);
     let mut notes: Vec<String> = (gaps.iter().rev().take(PASSAGES_NAMED))
         .map(|gap| {
             let [x, y] = rounded(gap.at, scenario);

@@ -106,18 +106,18 @@ impl EdgeTree {
         )
     }
 
-    /// Visits every edge with a point within `radius` of `center`.
+    /// Visits every edge with a point within `radius` of `center`, with its index.
     pub(super) fn for_each_near(
         &self,
         center: Point,
         radius: f64,
-        mut visit: impl FnMut(&Segment),
+        mut visit: impl FnMut(usize, &Segment),
     ) {
         self.any(
             |bounds| bounds.distance_squared(center) <= radius * radius,
-            |_, edge| {
+            |index, edge| {
                 if edge.distance(center) <= radius {
-                    visit(edge);
+                    visit(index, edge);
                 }
                 false
             },

@@ -143,7 +143,7 @@ impl Errors {
     ) -> Vec<HalfPlane> {
         let kept = self.planning_clearance(clearance);
         let mut half_planes = Vec::new();
-        workspace.for_each_wall_near(position, kept + radius, |wall| {
+        workspace.for_each_edge_near(position, kept + radius, |_, wall| {
             let towards = wall.nearest(position) - position;
             let Some(border) = HalfPlane::through(position, towards) else { return };
             let distance = towards.norm();

@@ -281,9 +281,9 @@ impl FreeSpace {
         &self,
         center: Point,
         radius: f64,
-        visit: impl FnMut(&Segment),
+        mut visit: impl FnMut(&Segment),
     ) {
-        self.sight.tree.for_each_near(center, radius, visit);
+        self.sight.tree.for_each_near(center, radius, |_, edge| visit(edge));
     }
 
     /// Visits the edges of the planning set within `radius` of `center`.
@@ -291,9 +291,9 @@ impl FreeSpace {
         &self,
         center: Point,
         radius: f64,
-        visit: impl FnMut(&Segment),
+        mut visit: impl FnMut(&Segment),
     ) {
-        self.planning.tree.for_each_near(center, radius, visit);
+        self.planning.tree.for_each_near(center, radius, |_, edge| visit(edge));
     }
 
     /// Checks that both outlines keep the clearance and that the planning set lies within the

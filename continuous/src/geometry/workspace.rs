@@ -324,12 +324,13 @@ impl Workspace {
         self.tree.is_near(path, distance)
     }
 
-    /// Visits the edges of ∂W with a point within `radius` of `center`.
-    pub(super) fn for_each_wall_near(
+    /// Visits the edges of ∂W with a point within `radius` of `center`, each with its number in
+    /// [`edges`](Self::edges), in no particular order.
+    pub fn for_each_edge_near(
         &self,
         center: Point,
         radius: f64,
-        visit: impl FnMut(&Segment),
+        visit: impl FnMut(usize, &Segment),
     ) {
         self.tree.for_each_near(center, radius, visit);
     }
