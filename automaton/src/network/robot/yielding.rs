@@ -55,9 +55,11 @@ impl Robot {
         let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
         // It does not pass the mover: there may be no room for both.
         let is_away = |step: Vector| step.dot(&(asking.from - self.position)) <= 0.0;
-        let begins = |place: Point| {
+        let leads_away_on_the_leash = |place: Point| {
             let way = self.site.free_space.geodesic(self.position, place)?;
-            self.next_corner(&way).map(|corner| corner - self.position)
+            let first = self.next_corner(&way)? - self.position;
+            let on_leash = |corner: &Point| (corner - centre).norm() <= leash;
+            Some(is_away(first) && way.waypoints.iter().all(on_leash))
         };
         let mut best = (room(self.position) + WORTH_A_STEP * self.clearance(), None);
         for pace in 1..=PACES {
@@ -66,9 +68,8 @@ impl Robot {
                 let step = Vector::new(angle.cos(), angle.sin()) * PACE * f64::from(pace);
                 let place = self.position + step * self.clearance();
                 if room(place) > best.0
-                    && (place - centre).norm() <= leash
                     && self.site.free_space.contains(place)
-                    && begins(place).is_some_and(is_away)
+                    && leads_away_on_the_leash(place).unwrap_or(false)
                 {
                     best = (room(place), Some(place));
                 }

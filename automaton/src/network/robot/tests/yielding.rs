@@ -105,6 +105,31 @@ fn it_steps_aside_as_far_as_it_takes_and_no_farther_than_its_leash() {
     assert!(place.y < short.position.y, "{place}");
 }
 
+/// Between two walls that end north of it, where a mover comes from the south: the places behind the walls are within
+/// the leash, and the ways to them are not.
+#[test]
+fn the_whole_way_aside_is_on_the_leash() {
+    let place_aside = |north_of_post: f64| {
+        let mut scenario = hall();
+        let end = HERE.y + north_of_post + CLEARANCE;
+        let wall = |from: f64, to: f64| {
+            let [from, to] = [from, to].map(|aside| HERE.x + aside * CLEARANCE);
+            vec![[from, 4.0], [to, 4.0], [to, end], [from, end]]
+        };
+        scenario.workspace.holes = vec![wall(-1.3, -1.2), wall(1.2, 1.3)];
+        let mut robot = robot_of(&scenario);
+        robot.holds(fixed(20, 13));
+        robot.position = north(north_of_post);
+        robot.arrival = robot.position;
+        let [position, way] = [-2.1, 4.0].map(|ahead| north(north_of_post + ahead * CLEARANCE));
+        robot.hears(Beacon { position, way: Some(way), ..asking(0.1) });
+        robot.place_aside()
+    };
+    let behind_a_wall = |place: Point| (place - HERE).x.abs() > 1.3 * CLEARANCE;
+    assert!(place_aside(0.0).is_some_and(behind_a_wall));
+    assert!(!place_aside(SERVICE_RADIUS - 0.5 * CLEARANCE).is_some_and(behind_a_wall));
+}
+
 /// Along a wall, and as far south as its leash allows, a robot steps aside to the north alone: not past a mover
 /// that comes from there.
 #[test]
