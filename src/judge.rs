@@ -4,7 +4,7 @@
 //! the properties, each event against the world and the events before it, and what observers concluded
 //! against what it derives itself. Nothing of the run is trusted, and nothing of it is computed
 //! again. Where the header says that messages are lost or nodes stop, the trace is held against what
-//! no fault may break ([`Safety`](crate::verify::network::Safety)).
+//! must hold under any fault ([`Safety`](crate::verify::network::Safety)).
 
 use std::io::BufRead;
 

@@ -60,7 +60,7 @@ pub enum MissionError {
     #[error(transparent)]
     Limit(#[from] InvalidLimit),
     /// The network came to a state in which it could not go on.
-    #[error("the executor stops at t = {time} s: {reason}; this is a fault of the program")]
+    #[error("internal error: the executor stopped at t = {time} s: {reason}")]
     Stopped {
         /// t in seconds.
         time: f64,
@@ -127,7 +127,7 @@ pub fn run_network<M: Medium<Message, Point>, N: RobotNode>(
     run_network_with_faults(scenario, Faults::default(), network, watchers)
 }
 
-/// The same for a network in which these faults occur. It is held against what no fault may break.
+/// The same for a network in which these faults occur. It is held against what must hold under any fault.
 ///
 /// # Errors
 /// When a watcher fails, a node cannot go on, or the settings leave no time for the mission.
@@ -205,7 +205,7 @@ fn carry_out<S: Runnable>(
     Ok(Completed { times: system.times(), ..gallery.conclude(end)? })
 }
 
-/// Runs the mission of `scenario` in a storm. It is held against what no fault may break. Where each access point
+/// Runs the mission of `scenario` in a storm. It is held against what must hold under any fault. Where each access point
 /// has a team of its own, messages and nodes fail within each fleet; where the robots of other fleets are, is always
 /// known.
 ///

@@ -221,7 +221,7 @@ pub enum TraceError {
     )]
     OtherFormat { format: String, version: u32 },
     /// A line where it does not belong.
-    #[error("line {line}: this is the place of {wanted}")]
+    #[error("line {line}: expected {wanted} here")]
     Misplaced { line: usize, wanted: &'static str },
     /// A step whose lists do not fit together.
     #[error("line {line}: {wrong}")]

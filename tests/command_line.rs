@@ -59,7 +59,7 @@ fn faults_are_asked_for_and_checked() {
     let judged = pleach(&["judge", trace]);
     assert_eq!(judged.status.code(), Some(0));
     let judged = said(&judged.stdout);
-    assert!(judged.contains("judged by what no fault may break"), "{judged}");
+    assert!(judged.contains("judged by what must hold under any fault"), "{judged}");
 }
 
 #[test]

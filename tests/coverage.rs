@@ -158,7 +158,7 @@ fn every_row_is_taken_or_has_a_reason() {
     let (configurations, in_explored) = explored();
     let mut page = format!(
         "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it coverage -->\n\n\
-         # What acts in the tests\n\n\
+         # Coverage of the tables by tests\n\n\
          In how many of the {} shipped scenarios, of {} other missions (random, under stress, at their \
          limits), of {} storms, and of {configurations} configurations that are explored exhaustively some \
          node takes each row of its tables. The explorer stands for routes and motion: rows of the control \

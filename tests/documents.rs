@@ -178,7 +178,7 @@ fn glossaries() -> String {
     let access_points = glossary("Access points", ACCESS_POINT_GLOSSARY);
     let attendance = glossary("A robot as an access point knows it", ATTENDANCE_GLOSSARY);
     let user = glossary("The user", USER_GLOSSARY);
-    format!("## What the guards speak of\n\n{robots}\n{access_points}\n{attendance}\n{user}")
+    format!("## Variables of the guards\n\n{robots}\n{access_points}\n{attendance}\n{user}")
 }
 
 fn chapter<L: Location, E: Event, S: Valuation>(

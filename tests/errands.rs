@@ -127,7 +127,7 @@ fn a_task_that_is_serviced_is_pursued_no_longer() {
     assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
 }
 
-/// Whatever else fails, nothing is broken that no fault may break.
+/// Whatever else fails, nothing is broken that must hold under any fault.
 #[test]
 fn no_storm_closes_a_task_before_its_time() {
     let mut scenario = shipped("errands");

@@ -1,4 +1,4 @@
-//! Traces of missions with faults are judged by what no fault may break: sound ones pass, spoiled ones
+//! Traces of missions with faults are judged by what must hold under any fault: sound ones pass, spoiled ones
 //! do not.
 
 use crate::missions::shipped;

@@ -232,7 +232,7 @@ fn the_mission_tolerates_the_loss_of_two_of_three_beacons() {
     }
 }
 
-/// A mission over a medium that loses messages, held against what no fault may break; `nodes` tells whether a robot
+/// A mission over a medium that loses messages, held against what must hold under any fault; `nodes` tells whether a robot
 /// is cut off.
 fn run_with_losses(
     scenario: Scenario,

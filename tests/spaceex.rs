@@ -179,11 +179,11 @@ fn what_is_not_supported_is_refused_with_its_line() {
         ),
         (
             changed("v := -c*v", "v := -w*v"),
-            "line 17 of the model: `w` is no parameter of component `ball`",
+            "line 17 of the model: `w` is not a parameter of component `ball`",
         ),
         (
             changed("d1=\"1\"", "d1=\"2\""),
-            "line 4 of the model: `x` is no number (d1 is not 1): use one parameter for each entry",
+            "line 4 of the model: `x` is not a number (d1 is not 1): use one parameter for each entry",
         ),
         (
             changed("dynamics=\"const\"", "dynamics=\"constant\""),
@@ -244,7 +244,7 @@ fn what_is_not_supported_is_refused_with_its_line() {
         ),
         (
             changed("v &lt; 0</guard>", "hop &lt; 0</guard>"),
-            "line 16 of the model: `hop` is a label, and no number",
+            "line 16 of the model: `hop` is a label, not a number",
         ),
         (
             changed("v &lt; 0</guard>", "v &lt; 0 &amp;</guard>"),

@@ -263,13 +263,13 @@ pub struct Sliding {
 #[non_exhaustive]
 pub enum Limit {
     /// Jumps.
-    #[error("the run has taken all {0} jumps that it may")]
+    #[error("the run reached its limit of {0} jumps")]
     Jumps(u64),
     /// Pieces of flows and spans of time examined for events.
-    #[error("the run has taken all {0} steps that it may")]
+    #[error("the run reached its limit of {0} steps")]
     Steps(u64),
     /// Memory for the trajectory, in bytes.
-    #[error("the trajectory has filled all {0} bytes that it may")]
+    #[error("the trajectory reached its limit of {0} bytes")]
     Memory(u64),
 }
 

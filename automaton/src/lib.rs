@@ -10,8 +10,9 @@
 //! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG, LaTeX and tables from the automaton itself,
 //!   so that pictures cannot drift from the code, and plots its trajectories;
 //! * **covered**: [`coverage`] counts what a set of runs has exercised, and what it has not;
-//! * **checked**: [`decision`] finds a state in which guards and invariants hold together, or proves
-//!   that there is none.
+//! * **checked**: [`check`] reports guards that overlap, states without a way out and resets that
+//!   break invariants; [`decision`] finds a state in which guards and invariants hold together, or
+//!   proves that there is none.
 //!
 //! The robot network is one such model, in [`network`]; nothing else here knows of robots. It is
 //! behind the feature `network`, which is on by default; without it the framework needs neither

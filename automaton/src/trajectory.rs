@@ -119,7 +119,7 @@ pub enum FileError {
     #[error("a trajectory cannot be written or read: {0}")]
     Json(#[from] serde_json::Error),
     /// The text is a trajectory in form only.
-    #[error("the file is no trajectory of a run: {0}")]
+    #[error("the file is not a trajectory of a run: {0}")]
     Inconsistent(&'static str),
 }
 

@@ -5,7 +5,7 @@
 //! to which, how urgently, and in which order if several transitions could be taken. Running,
 //! drawing, checking and proving read the same table.
 //!
-//! No continuous value gets here, nothing is allocated while running, and every order is total; that
+//! No continuous value gets here, a table is read without allocation, and every order is total; that
 //! keeps the layer within reach of exhaustive checks and proofs.
 //!
 //! ```

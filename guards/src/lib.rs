@@ -34,8 +34,8 @@
 //!
 //! # Text
 //!
-//! Everything that is printed can be parsed again, with mathematical or ASCII operators, and nothing
-//! is lost in between:
+//! What is printed with mathematical or ASCII operators can be parsed again, and nothing is lost in
+//! between. Named Rust functions are the exception: their text is no more than their name.
 //!
 //! ```
 //! use pleach_guards::{Predicate, norm, variable};

@@ -137,7 +137,7 @@ pub struct OutputArguments {
 pub struct WatchArguments {
     /// The scenario: a TOML file, the same for all processes
     pub scenario: PathBuf,
-    /// Messages are lost or processes killed: check only what no fault may break
+    /// Messages are lost or processes killed: check only what must hold under any fault
     #[arg(long)]
     pub faults: bool,
     /// What it writes.

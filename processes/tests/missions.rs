@@ -103,7 +103,7 @@ fn a_mission_that_ends_unserviced_says_why() {
     assert_eq!(judge(&trace).0, Some(0), "{:?}", judge(&trace));
 }
 
-/// What no fault may break is checked while the mission goes on; its end would have exit status 4.
+/// What must hold under any fault is checked while the mission goes on; its end would have exit status 4.
 #[test]
 fn a_robot_is_killed_and_started_again_while_messages_are_lost() {
     let _alone = alone();

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::thread;
 
-/// Robots grow a network of relays from fixed access points to the places where they are needed.
+/// Run, check and draw networks of mobile radio relays and other hybrid automata
 #[derive(Debug, Parser)]
 #[command(name = "pleach", version, after_help = EXIT_STATUS)]
 pub struct Arguments {
@@ -22,7 +22,7 @@ pub struct Arguments {
 
 const EXIT_STATUS: &str = "\
 Exit status:
-  0  all tasks are serviced, or are over
+  0  every task was serviced, or expired or was withdrawn
   1  the program failed
   2  the scenario or the arguments are wrong, and nothing was run
   3  the mission ended with tasks unserviced, or was interrupted, and the reason is named
@@ -46,8 +46,8 @@ pub enum Command {
     /// the exit status of the worst: 1, then 4, then 3, then 0. Ctrl-C or SIGTERM ends a mission
     /// cleanly: trace, summary and figures cover it up to then, and the exit status is 3.
     ///
-    /// With --loss and --stop, messages are lost and robots stop; only what no fault may break is
-    /// then checked.
+    /// --loss drops messages and --stop crashes robots. The run is then checked only against the
+    /// safety properties that hold under faults.
     Run(RunArguments),
     /// Check whether missions can start from scenarios, and draw their starts
     ///
@@ -132,7 +132,7 @@ pub struct RunArguments {
     #[arg(long, short, value_name = "COUNT", allow_negative_numbers = true,
         value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
-    /// Write what happens to FILE, one JSON object per line; with several runs FILE is a folder
+    /// Write the trace to FILE as JSON lines; with several runs FILE is a folder
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
     /// Write figures (SVG) into FOLDER [default: figures/<name of the scenario>, and none with
@@ -237,7 +237,7 @@ impl FromStr for Spot {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text:?} is no place: write two numbers as X,Y");
+        let wrong = || format!("{text:?} is not a place: write two numbers as X,Y");
         let (x, y) = text.split_once(',').ok_or_else(wrong)?;
         let number = |text: &str| text.trim().parse().map_err(|_| wrong());
         Ok(Spot([number(x)?, number(y)?]))

@@ -18,7 +18,7 @@ pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
         source::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
     let reader = TraceReader::new(input).map_err(|error| unreadable(error.to_string()))?;
     let faults = judged_faults(&Settings::resolve(reader.scenario()), reader.faults());
-    let whole = if faults.are_none() { "" } else { ", judged by what no fault may break" };
+    let whole = if faults.are_none() { "" } else { ", judged by what must hold under any fault" };
     match judge(reader).map_err(|error| torn(error.to_string()))? {
         Verdict::Sound { periods, end, .. } => {
             let (trace, name) = (path.display(), end.outcome.name().replace('_', " "));

@@ -22,13 +22,13 @@ pub struct ReachArguments {
     /// The configuration: where runs begin, where they must not come, and for how long
     #[arg(long, value_name = "FILE")]
     pub cfg: PathBuf,
-    /// Follow runs for SECONDS, whatever the configuration says
+    /// The time horizon, in place of that of the configuration
     #[arg(long, value_name = "SECONDS")]
     pub horizon: Option<f64>,
-    /// Cut affine flows into steps of SECONDS, whatever the configuration says
+    /// The time step of affine flows, in place of that of the configuration
     #[arg(long, value_name = "SECONDS")]
     pub step: Option<f64>,
-    /// Cover the states of a flow in which a guard may hold by at most COUNT sets
+    /// The most sets that cover the states in which a guard meets a flow
     #[arg(long, value_name = "COUNT")]
     pub clusters: Option<usize>,
     /// Draw the sets, and runs inside, into FILE
@@ -141,7 +141,7 @@ fn axes(problem: &Problem, asked: Option<&str>) -> Result<[String; 2], Failure> 
     match (&names[..], asked) {
         ([across, up], _) => Ok([across.clone(), up.clone()]),
         ([up], None) => Ok(["t".to_owned(), up.clone()]),
-        (_, Some(text)) => Err(Failure::Usage(format!("{text:?} are no two names: write X,Y"))),
+        (_, Some(text)) => Err(Failure::Usage(format!("expected two names as X,Y, not {text:?}"))),
         (_, None) => {
             let first = problem.automata.first().and_then(|automaton| automaton.names().first());
             Ok(["t".to_owned(), first.copied().unwrap_or("t").to_owned()])

@@ -12,10 +12,8 @@ pub fn lines<'r>(remarks: impl IntoIterator<Item = &'r Remark>) -> Vec<String> {
     let line = |remark: &&Remark| format!("{}: {remark}", remark.key());
     let more = match outline.len().saturating_sub(REPAIRS_TOLD) {
         0 => None,
-        1 => Some("workspace: one more place of the outline is taken as it is meant".to_owned()),
-        more => Some(format!(
-            "workspace: {more} more places of the outline are taken as they are meant"
-        )),
+        1 => Some("workspace: one more defect of the outline was repaired".to_owned()),
+        more => Some(format!("workspace: {more} more defects of the outline were repaired")),
     };
     let told = outline.iter().take(REPAIRS_TOLD).map(line);
     others.iter().map(line).chain(told).chain(more).collect()

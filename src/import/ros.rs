@@ -18,7 +18,7 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Grid, ImportError> {
             .parse()
             .ok()
             .filter(|number: &f64| number.is_finite())
-            .ok_or_else(|| malformed(format!("{key}: {text:?} is no number"))),
+            .ok_or_else(|| malformed(format!("{key}: {text:?} is not a number"))),
         (None, Some(default)) => Ok(default),
         (None, None) => Err(malformed(format!("{key} is missing"))),
     };

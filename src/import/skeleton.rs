@@ -56,10 +56,10 @@ impl Choices {
 #[non_exhaustive]
 pub enum SkeletonError {
     /// No mission can start on it.
-    #[error("no scenario comes of this map: {0}")]
+    #[error("no scenario can be made of this map: {0}")]
     Invalid(#[from] InvalidScenario),
     /// The outline cannot be used.
-    #[error("no scenario comes of this map: {0}")]
+    #[error("no scenario can be made of this map: {0}")]
     Site(#[from] crate::automaton::network::SiteError),
     /// An access point stands outside the floor.
     #[error(

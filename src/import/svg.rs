@@ -218,7 +218,7 @@ impl Element {
         let text = self.attributes.get("points").map_or("", String::as_str);
         let words = text.split([' ', ',', '\t', '\n', '\r']).filter(|word| !word.is_empty());
         let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
-        let numbers = numbers.map_err(|_| format!("points {text:?} are no numbers"))?;
+        let numbers = numbers.map_err(|_| format!("points {text:?} are not numbers"))?;
         let mut path = BezPath::new();
         for (index, corner) in numbers.chunks_exact(2).enumerate() {
             let corner = (corner[0], corner[1]);

@@ -30,7 +30,7 @@ enum Step {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SettingError {
     /// There is no `=`.
-    #[error("{0:?} is no setting: write KEY=VALUE, such as control.step_radius=0.02")]
+    #[error("{0:?} is not a setting: write KEY=VALUE, such as control.step_radius=0.02")]
     NoValue(String),
     /// The key cannot be read.
     #[error(

@@ -58,8 +58,8 @@ impl Options {
             let value = unquoted(value).map_err(wrong)?;
             let number = || -> Result<f64, SpaceExError> {
                 let number: f64 =
-                    value.parse().map_err(|_| wrong(format!("`{value}` is no number")))?;
-                if number.is_nan() { Err(wrong("NaN is no number".into())) } else { Ok(number) }
+                    value.parse().map_err(|_| wrong(format!("`{value}` is not a number")))?;
+                if number.is_nan() { Err(wrong("NaN is not a number".into())) } else { Ok(number) }
             };
             match key {
                 "system" => options.system = Some((line, value.to_owned())),

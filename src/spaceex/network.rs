@@ -186,11 +186,11 @@ impl Instance<'_> {
                         known.any(|one| one.is_label && one.name == **name)
                     };
                     if let Some(label) = formula.variables().into_iter().find(is_label) {
-                        return Err(wrong(format!("`{label}` is a label, and no number")));
+                        return Err(wrong(format!("`{label}` is a label, not a number")));
                     }
                     if let Some(stranger) = stranger {
                         return Err(wrong(format!(
-                            "`{stranger}` is no parameter of component `{}`",
+                            "`{stranger}` is not a parameter of component `{}`",
                             self.component.id
                         )));
                     }

@@ -1,4 +1,4 @@
-//! What runs guarantee, as `docs/guarantees.md` states it: no event is missed in silence, instants do
+//! Guarantees of runs, as `docs/guarantees.md` states it: no event is missed in silence, instants do
 //! not drift, trajectories are the flows, and every run returns.
 
 mod accumulation;

@@ -58,14 +58,14 @@ pub struct FreeSpace {
 #[non_exhaustive]
 pub enum FreeSpaceError {
     /// The clearance is not a length.
-    #[error("the clearance is {clearance}; it is a finite length, 0 or more")]
+    #[error("the clearance is {clearance}; it must be a finite length, 0 or more")]
     InvalidClearance {
         /// The clearance asked for.
         clearance: f64,
     },
     /// The tolerance is too small or too large a part of the workspace.
     #[error(
-        "the tolerance is {fraction} of the extent; it is at least {} and at most {}",
+        "the tolerance is {fraction} of the extent; it must be at least {} and at most {}",
         TOLERANCES.start(), TOLERANCES.end()
     )]
     InvalidTolerance {
@@ -85,7 +85,7 @@ pub enum FreeSpaceError {
     },
     /// The reach of re-entry is no length, or leads back through walls.
     #[error(
-        "the reach of re-entry is {reach}; it is a length of 0 or more, less than {limit}, the \
+        "the reach of re-entry is {reach}; it must be a length of 0 or more, less than {limit}, the \
          clearance that planned positions keep"
     )]
     InvalidReach {

@@ -234,7 +234,7 @@ impl Component {
         for dimension in ["d1", "d2"] {
             if attributes.get(dimension)?.is_some_and(|value| value != "1") {
                 return Err(format!(
-                    "`{name}` is no number ({dimension} is not 1): use one parameter for each entry"
+                    "`{name}` is not a number ({dimension} is not 1): use one parameter for each entry"
                 ));
             }
         }

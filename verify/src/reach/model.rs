@@ -118,7 +118,7 @@ pub enum ModelError {
         location: String,
     },
     /// There is no such parameter.
-    #[error("`{parameter}` is no parameter of the automaton")]
+    #[error("`{parameter}` is not a parameter of the automaton")]
     Parameter {
         /// The name.
         parameter: String,

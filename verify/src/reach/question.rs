@@ -82,7 +82,9 @@ pub enum ReachError {
         known: String,
     },
     /// A formula has windows without an end.
-    #[error("`{formula}` speaks of all times: give its windows ends, or ask what is never reached")]
+    #[error(
+        "`{formula}` has a time window without an end: give it one, or ask what is never reached"
+    )]
     Endless {
         /// The formula.
         formula: String,

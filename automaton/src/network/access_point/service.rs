@@ -86,21 +86,21 @@ crate::observed! {
         ),
         /// The newest notice received says that the mission has ended.
         hears_end: point.heard_end().is_some(),
-        /// So it says, and that a task is given up.
+        /// The newest notice received says that the mission has ended, and that a task is given up.
         hears_failure: point.hears_failure(),
-        /// So it says for want of robots.
+        /// The newest notice received says that the mission has ended for lack of robots.
         hears_want: point.hears_want(),
-        /// It has heard so since it announced the task.
+        /// A notice that the mission has ended for lack of robots has been received since the task was announced.
         wants_robots: point.given_up_in.is_some(),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
-        /// There is a task after the one announced last.
+        /// A task is to be announced: one that is no longer serviced, or the next one asked for.
         task_left: point.next_task().is_some(),
         /// A task that is serviced is to end: its robots are free then.
         awaits_end: point.awaits_end(),
         /// A task has ended since it announced its task, or so shortly before that robots could not be recruited yet.
         has_freed: point.has_freed(),
-        /// Those may have yet to become redundant, or those of a team that has given up.
+        /// Robots of a task that has ended, or of a team that has given up, may have yet to become redundant.
         awaits_retirements: point.awaits_retirements(),
         /// A task is still to come, or to end: the user will ask for it, or it is serviced for a time.
         task_to_come: point.expects_task(),

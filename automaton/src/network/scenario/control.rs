@@ -97,7 +97,7 @@ pub struct Control {
     /// Δt: length of a control period in seconds. Default 1.
     pub period: Option<f64>,
     /// Rounds of coordination messages in a control period. Default 8; with fewer than 5 a mission is judged only by
-    /// what no fault may break.
+    /// what must hold under any fault.
     pub rounds_per_period: Option<usize>,
     /// How routes are computed. Default `accelerated_dual`.
     pub routing_method: Option<RoutingMethod>,

@@ -171,10 +171,10 @@ pub enum Problem {
     )]
     BuiltTooWeak { build_reliability: f64, tree_reliability: f64 },
     /// Nowhere to send information to.
-    #[error("there is none: information needs at least one [[access_point]] to go to")]
+    #[error("missing: add at least one [[access_point]], to which the data of the robots goes")]
     NoAccessPoint,
     /// There is no robot.
-    #[error("there is none: a mission needs at least one [[robot]]")]
+    #[error("missing: add at least one [[robot]]")]
     NoRobot,
     /// A task that is asked for before one that stands before it.
     #[error(

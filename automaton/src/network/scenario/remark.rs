@@ -178,7 +178,7 @@ impl fmt::Display for Remark {
             Remark::ShortPeriods { rounds } => write!(
                 formatter,
                 "{rounds}, and an exchange of duties takes up to {}: a control period may end during one, and the \
-                 mission is judged only by what no fault may break; with more rounds it is judged in full",
+                 mission is judged only by what must hold under any fault; with more rounds it is judged in full",
                 Settings::ROUNDS_OF_AN_EXCHANGE
             ),
             Remark::FewRounds { rounds } => write!(

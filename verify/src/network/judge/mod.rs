@@ -13,7 +13,7 @@
 //! while it goes on, and a trace afterwards, by the same code.
 //!
 //! Where messages are lost and nodes stop, robots need not know the same, and observers cannot
-//! conclude what they can without faults. Such a record is held against what no fault may break
+//! conclude what they can without faults. Such a record is held against what must hold under any fault
 //! ([`Safety`]). The [`Referee`] is the one or the other, or has one of them for each of several fleets
 //! ([`JudgeOfFleets`]).
 
