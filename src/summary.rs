@@ -1,6 +1,7 @@
 //! What a person needs in order to judge a mission that has ended.
 
 use crate::automaton::network::KernelTimes;
+use crate::automaton::network::phrase;
 use crate::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::{Scenario, Settings};
 use crate::figures::quantity;
@@ -105,15 +106,13 @@ pub(crate) fn measured(extremes: &Extremes, settings: &Settings) -> Vec<Measured
     ];
     let measured = rows.into_iter().filter_map(|(name, extreme, symbol, bound)| {
         let Extreme { value, instant, robots } = extreme.as_ref()?;
-        let numbers: Vec<String> = robots.iter().map(usize::to_string).collect();
-        let noun = if robots.len() == 1 { "robot" } else { "robots" };
         // What rounds to zero has no sign.
         let value = (value * 1e6).round() / 1e6 + 0.0;
         Some(Measured {
             name,
             value: format!("{value:.6}"),
             step: instant.step,
-            robots: format!("{noun} {}", numbers.join(" and ")),
+            robots: phrase::named("robot", robots),
             bound: format!("{symbol} {}", quantity(bound)),
         })
     });

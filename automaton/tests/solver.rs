@@ -206,10 +206,10 @@ fn flows_end_at_their_singularities_and_say_when() {
                 panic!("{:?}", trajectory.ending())
             };
             assert_eq!(locations, "`there` of `automaton`");
-            let said = reason.split_once(" at ").and_then(|(_, rest)| rest.strip_suffix(" s"));
-            let said: f64 = said.and_then(|time| time.parse().ok()).expect("it says when");
-            assert_near(said, exact, 1e-6);
-            assert!(!reason.starts_with(" at "), "it says why: {reason}");
+            let said = reason.strip_prefix("at ").and_then(|said| said.split_once(" s, "));
+            let (time, why) = said.expect("it says when");
+            assert_near(time.parse().expect("the time is a number"), exact, 1e-6);
+            assert!(!why.is_empty(), "it says why: {reason}");
         }
     }
 }

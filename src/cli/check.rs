@@ -92,16 +92,16 @@ fn team(fleet: &Fleet, whole: &ValidScenario) -> String {
     let access_point = fleet.access_point();
     let [x, y] = whole.access_point[access_point].position;
     let tasks = (0..fleet.scenario().task.len()).filter_map(|task| fleet.outward().task(task));
-    let tasks = match tasks.collect::<Vec<_>>() {
-        none if none.is_empty() => "no task".to_owned(),
-        tasks => numbered("task", &tasks),
-    };
+    let tasks = numbered("task", &tasks.collect::<Vec<_>>());
     let robots = numbered("robot", fleet.robots());
     format!("access point {access_point} at ({x}, {y}): {robots}; {tasks}")
 }
 
-/// "robot 3", "robots 0 to 3 and 6": numbers in a row by the first and the last of them.
+/// "no robot", "robot 3", "robots 0 to 3 and 6": numbers in a row by the first and the last of them.
 fn numbered(noun: &str, numbers: &[usize]) -> String {
+    if numbers.is_empty() {
+        return format!("no {noun}");
+    }
     let plural = if numbers.len() == 1 { "" } else { "s" };
     let rows = numbers.chunk_by(|one, next| one + 1 == *next);
     let rows: Vec<String> = rows.flat_map(row).collect();
@@ -151,9 +151,7 @@ fn draw(
     let mut opening = Opening::default();
     mission::run(scenario, &mut [&mut opening])?;
     let Some(snapshot) = opening.snapshot else { return Ok(None) };
-    let outline = scenario.site().free_space.outline().iter();
-    let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    let plan = Plan::new(scenario, outline.map(corners).collect());
+    let plan = Plan::of(scenario);
     let title = format!("{}: the start", scenario.name);
     let picture = plan.render(&Scene { snapshot: &snapshot, title: &title, trails: &[] });
     let path = folder.join("start.svg");

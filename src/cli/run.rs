@@ -111,13 +111,9 @@ fn run_many(
         said += &format!("{} of {} runs did not begin\n", runs.len() - records.len(), runs.len());
     }
     say(arguments, &said)?;
-    let worst = records.iter().map(|record| record.status).max_by_key(|status| status.severity());
     let incomplete = (records.len() < runs.len()).then_some(Status::Unserviced);
-    Ok([worst, incomplete]
-        .into_iter()
-        .flatten()
-        .max_by_key(|status| status.severity())
-        .unwrap_or(Status::Done))
+    let statuses = records.iter().map(|record| record.status).chain(incomplete);
+    Ok(statuses.max_by_key(|status| status.severity()).unwrap_or(Status::Done))
 }
 
 /// What is told before the mission: tasks that no robot can service, with which it will end, what is taken

@@ -61,11 +61,9 @@ impl Album {
     /// The same of a mission in which these faults occur.
     #[must_use]
     pub fn with_faults(scenario: &ValidScenario, faults: Faults) -> Album {
-        let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-        let outline = scenario.site().free_space.outline().iter().map(corners).collect();
         let robots = scenario.robot.len();
         Album {
-            plan: Plan::new(scenario, outline),
+            plan: Plan::of(scenario),
             page: MissionPage::with_faults(scenario, faults),
             pictures: Vec::new(),
             film: Film::default(),

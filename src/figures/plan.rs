@@ -1,6 +1,6 @@
 //! The floor plan behind the robots: walls, free space and the lengths that matter in it.
 
-use pleach_automaton::network::scenario::Scenario;
+use pleach_automaton::network::scenario::{Scenario, ValidScenario};
 use pleach_drawing::svg::node::element::{Group, Path};
 use pleach_drawing::{corners, layer, number};
 
@@ -21,9 +21,17 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Takes the scenario and the loops of the outline of W_f, which may be none.
+    /// Of a scenario, with the outline of W_f.
     #[must_use]
-    pub fn new(scenario: &Scenario, free_space_outline: Vec<Vec<[f64; 2]>>) -> Plan {
+    pub fn of(scenario: &ValidScenario) -> Plan {
+        let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
+        let outline = scenario.site().free_space.outline();
+        Plan::new(scenario, outline.iter().map(corners).collect())
+    }
+
+    /// The same with these loops for the outline of W_f, which may be none.
+    #[must_use]
+    pub(super) fn new(scenario: &Scenario, free_space_outline: Vec<Vec<[f64; 2]>>) -> Plan {
         Plan { scenario: scenario.clone(), free_space: free_space_outline, is_plain: false }
     }
 

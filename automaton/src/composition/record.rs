@@ -1,5 +1,7 @@
 //! Writing the trajectory while a simulation runs.
 
+use pleach_continuous::flow::Piece;
+
 use super::flight::Flight;
 use super::group::Group;
 use super::settings::Settings;
@@ -62,7 +64,7 @@ impl Record {
             let next = Stretch::at(at, flight.since, stretch.last.clone());
             stretches.push(std::mem::replace(&mut stretch, next));
         }
-        let pieces = flight.pieces.iter().map(pleach_continuous::flow::Piece::len).sum::<usize>();
+        let pieces = flight.pieces.iter().map(Piece::numbers).sum::<usize>();
         self.numbers += (pieces + flight.landing.len()) as u64 + OVERHEAD;
         stretch.until = (flight.since + flight.duration).seconds();
         stretch.since = flight.since;

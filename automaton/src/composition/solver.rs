@@ -76,26 +76,26 @@ impl<'a> Solver<'a> {
                 Method::Linear(LinearFlow::of(&linear, &start, limit)?, variables)
             }
             None => {
-                field.hold().map(|hold| hold.choose(&field.start));
+                if let Some(hold) = field.hold() {
+                    hold.choose(&field.start);
+                }
                 let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
                 Method::Steps(Box::new(integrator.with_method(settings.method)))
             }
         };
-        let (pieces, grazes, enclosures) = (Vec::new(), Vec::new(), Vec::new());
-        let (size, reached, crawled, kink) = (0, 0.0, 0, None);
         let seen_to = field.is_sharp().then(|| settings.tolerances());
         let is_complete =
             matches!(method, Method::Steps(_)) && field.rows.iter().all(|row| *row == Row::Curved);
         Ok(Solver {
             field,
             method,
-            pieces,
-            size,
-            reached,
-            crawled,
-            kink,
-            grazes,
-            enclosures,
+            pieces: Vec::new(),
+            size: 0,
+            reached: 0.0,
+            crawled: 0,
+            kink: None,
+            grazes: Vec::new(),
+            enclosures: Vec::new(),
             is_complete,
             seen_to,
         })
@@ -204,7 +204,7 @@ impl<'a> Solver<'a> {
         let progress = self.check_progress(&piece);
         if end > start {
             self.reached = end;
-            self.size += piece.len();
+            self.size += piece.numbers();
             self.pieces.push(piece.within(start, end));
         }
         bounded.map_err(|(_, reason)| reason)?;
@@ -435,7 +435,7 @@ impl<'a> Solver<'a> {
                     let name = component.blueprint.coordinates[rate.coordinate];
                     let reason = format!(
                         "within the error of the solution, the rate of `{name}` may grow without bound \
-                         or have no value,"
+                         or have no value"
                     );
                     return Err((from, reason));
                 };
@@ -469,7 +469,7 @@ impl<'a> Solver<'a> {
                 let mut range = |span| self.range(radicand, component, piece, span);
                 let Some(end) = end_before_negative(whole, &mut range) else { continue };
                 let name = component.blueprint.coordinates[rate.coordinate];
-                let reason = format!("a root in the rate of `{name}` has no value any more,");
+                let reason = format!("a root in the rate of `{name}` has no value any more");
                 return Err((end, reason));
             }
         }
@@ -485,7 +485,7 @@ impl<'a> Solver<'a> {
         if let Some(kink) = self.kink {
             return Err(format!(
                 "no solution leaves the kink of `{kink}`, to which the flow leads from both sides (it \
-                 slides: make each side a location, and see `Automaton::with_sliding`),"
+                 slides: make each side a location, and see `Automaton::with_sliding`)"
             ));
         }
         Err("the flow is singular: steps are too short to go on".to_owned())
@@ -538,7 +538,7 @@ fn without_time(fault: &IntegrationFailure) -> String {
     match fault {
         IntegrationFailure::StepTooSmall { .. } => {
             "no step is accurate enough, however short: the solution runs off to infinity, or its \
-             rates jump,"
+             rates jump"
                 .to_owned()
         }
         IntegrationFailure::Undefined { .. } => "the rates are not finite numbers".to_owned(),

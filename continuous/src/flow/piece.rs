@@ -176,14 +176,9 @@ impl Piece {
         is_whole && is_ordered && self.ends.is_sorted() && self.errors.len() <= self.ends.len()
     }
 
-    /// How many numbers it holds.
-    pub fn len(&self) -> usize {
+    /// How many numbers it is stored in: coefficients, ends and errors.
+    pub fn numbers(&self) -> usize {
         self.coefficients.len() + self.ends.len() + self.errors.len()
-    }
-
-    /// Whether it has no component.
-    pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
     }
 
     /// The value of a component at `time`, also beyond the ends.

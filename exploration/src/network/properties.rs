@@ -79,7 +79,7 @@ fn parents(protocol: &Protocol, state: &State) -> Vec<Option<usize>> {
 /// From parent to parent, every robot that has one comes to an access point. Once a robot has failed, the way
 /// from post to post may end at one that nobody holds, and never leads back.
 pub fn tree_is_rooted(protocol: &Protocol, state: &State) -> bool {
-    match protocol.has_failures(state) {
+    match state.has_failures() {
         true => tree::is_acyclic(&parents_of_posts(protocol, state)),
         false => tree::is_rooted(&parents(protocol, state)),
     }
@@ -105,22 +105,18 @@ fn parents_of_posts(protocol: &Protocol, state: &State) -> Vec<Option<usize>> {
 pub fn workers_are_in_the_tree(protocol: &Protocol, state: &State) -> bool {
     let is_member =
         |it: RobotView<'_>| tree::is_member_unless_redundant(it.role(), it.tree_parent());
-    protocol.has_failures(state) || protocol.running(state).all(is_member)
+    state.has_failures() || protocol.running(state).all(is_member)
 }
 
 /// The announcements that robots go by who may not know of one another's any more: all of them go by the
 /// same one, as far as these properties are concerned, until a robot has failed.
 fn announcements(protocol: &Protocol, state: &State) -> BTreeSet<Option<(u32, Option<usize>)>> {
-    let known = protocol.running(state).map(|robot| going_by(protocol, state, robot));
+    let known = protocol.running(state).map(|robot| going_by(state, robot));
     known.collect()
 }
 
-fn going_by(
-    protocol: &Protocol,
-    state: &State,
-    robot: RobotView<'_>,
-) -> Option<(u32, Option<usize>)> {
-    protocol.has_failures(state).then(|| (robot.epoch(), robot.current_task()))
+fn going_by(state: &State, robot: RobotView<'_>) -> Option<(u32, Option<usize>)> {
+    state.has_failures().then(|| (robot.epoch(), robot.current_task()))
 }
 
 /// At most one robot is the leader; once a robot has failed, at most one of those that go by the same
@@ -129,7 +125,7 @@ pub fn at_most_one_leads(protocol: &Protocol, state: &State) -> bool {
     announcements(protocol, state).into_iter().all(|announcement| {
         let roles: Vec<Role> = protocol
             .running(state)
-            .filter(|&robot| going_by(protocol, state, robot) == announcement)
+            .filter(|&robot| going_by(state, robot) == announcement)
             .filter(|robot| !has_handed_over(protocol, state, *robot))
             .map(RobotView::role)
             .collect();
@@ -151,7 +147,7 @@ fn team_is_a_chain(
 ) -> bool {
     let robots = protocol.running(state).zip(duties(protocol, state));
     let team: Vec<Post> = robots
-        .filter(|&(robot, _)| going_by(protocol, state, robot) == announcement)
+        .filter(|&(robot, _)| going_by(state, robot) == announcement)
         .filter_map(|(_, duty)| duty.post().copied())
         .filter(|post| post.is_primary())
         .collect();
@@ -162,7 +158,7 @@ fn team_is_a_chain(
             && rivals == 1
             && match post.kind {
                 // The team may have been dissolved where the notice has arrived already.
-                PostKind::Primary { follows: Some(ahead) } if !protocol.has_failures(state) => {
+                PostKind::Primary { follows: Some(ahead) } if !state.has_failures() => {
                     posts(protocol, state).iter().any(|other| other.id == ahead)
                 }
                 _ => true,
@@ -173,7 +169,7 @@ fn team_is_a_chain(
 /// A post with the post of a robot with a duty as a child is held, unless a subgroup of Σ is on its
 /// way: then its robots stand for the posts that they have left. Not checked once a robot has failed: it holds none.
 pub fn bearing_posts_are_held(protocol: &Protocol, state: &State) -> bool {
-    if protocol.has_failures(state) {
+    if state.has_failures() {
         return true;
     }
     let is_on_its_way = |duty: &Duty| matches!(duty, Duty::Shifting(_));
@@ -207,14 +203,14 @@ fn holders(protocol: &Protocol, state: &State, task: usize) -> usize {
 
 /// Every task that has been serviced is the duty of a robot. Not checked once a robot has failed.
 pub fn serviced_tasks_are_held(protocol: &Protocol, state: &State) -> bool {
-    protocol.has_failures(state)
+    state.has_failures()
         || (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) > 0)
 }
 
 /// No task is the duty of two robots, but while one relieves the other on Σ. Not checked once a robot has failed:
 /// one that is cut off may be given up while it services a task.
 pub fn no_task_is_held_twice(protocol: &Protocol, state: &State) -> bool {
-    if protocol.has_failures(state) {
+    if state.has_failures() {
         return true;
     }
     let relieves =
@@ -226,7 +222,7 @@ pub fn no_task_is_held_twice(protocol: &Protocol, state: &State) -> bool {
 /// A robot stands at every serviced task, and at the place of every post, fixed or waiting on Σ,
 /// on which two branches hang: also while one robot relieves another of it. Not checked once a robot has failed.
 pub fn junctions_and_tasks_are_occupied(protocol: &Protocol, state: &State) -> bool {
-    if protocol.has_failures(state) {
+    if state.has_failures() {
         return true;
     }
     let places = &protocol.configuration().places;
@@ -260,9 +256,8 @@ pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
 /// mission has gone on, and the election was checked before. Nor do robots that have failed.
 pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
     protocol.robots(state).filter_map(RobotView::concluded_election).all(|(id, winner)| {
-        let took_part = |robot: RobotView<'_>| {
-            robot.election() == Some(id) && !protocol.has_failed(state, robot.id())
-        };
+        let took_part =
+            |robot: RobotView<'_>| robot.election() == Some(id) && !state.has_failed(robot.id());
         let bids: Vec<_> = protocol.robots(state).map(|robot| robot.own_bid(id)).collect();
         !protocol.robots(state).all(took_part) || election::is_won_by_best(&bids, winner)
     })
@@ -274,7 +269,7 @@ pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
 pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
     let newest = announcements(protocol, state).into_iter().next_back().flatten();
     let of = |is_member: &dyn Fn(RobotView<'_>) -> bool| -> Vec<usize> {
-        let robots = protocol.running(state).filter(|&it| going_by(protocol, state, it) == newest);
+        let robots = protocol.running(state).filter(|&it| going_by(state, it) == newest);
         robots.filter(|robot| is_member(*robot)).map(RobotView::id).collect()
     };
     let is_shifting = |robot: RobotView<'_>| matches!(robot.duty(), Duty::Shifting(_));
@@ -381,5 +376,5 @@ pub fn has_ended(protocol: &Protocol, state: &State) -> bool {
     let ignorant: Vec<usize> =
         protocol.locals(state).enumerate().filter(|(_, it)| !knows(it)).map(|(id, _)| id).collect();
     let can_know = |reached: &[bool]| ignorant.iter().any(|&node| reached[node]);
-    ignorant.is_empty() || protocol.has_failures(state) && !can_know(&protocol.connected(state))
+    ignorant.is_empty() || state.has_failures() && !can_know(&protocol.connected(state))
 }

@@ -136,6 +136,28 @@ pub struct State {
     restarted: u32,
 }
 
+impl State {
+    /// Whether a node runs.
+    pub const fn is_running(&self, node: NodeId) -> bool {
+        self.stopped >> node & 1 == 0
+    }
+
+    /// Whether a robot has stopped, whether or not it has begun again.
+    pub const fn has_failed(&self, robot: NodeId) -> bool {
+        (self.stopped | self.restarted) >> robot & 1 != 0
+    }
+
+    /// Whether any robot has.
+    pub const fn has_failures(&self) -> bool {
+        self.stopped | self.restarted != 0
+    }
+
+    /// Whether a robot has moved in this period.
+    const fn has_moved(&self, robot: NodeId) -> bool {
+        self.moved >> robot & 1 != 0
+    }
+}
+
 /// Why a configuration cannot be explored.
 #[derive(Debug, thiserror::Error)]
 pub enum ProtocolError {
@@ -235,24 +257,9 @@ impl Protocol {
         &self.site.automata
     }
 
-    /// Whether a node runs.
-    pub const fn is_running(&self, state: &State, node: NodeId) -> bool {
-        state.stopped >> node & 1 == 0
-    }
-
     /// The robots of a state that run.
     pub fn running<'a>(&'a self, state: &'a State) -> impl Iterator<Item = RobotView<'a>> {
-        self.robots(state).filter(|robot| self.is_running(state, robot.id()))
-    }
-
-    /// Whether a robot has stopped, whether or not it has begun again.
-    pub const fn has_failed(&self, state: &State, robot: NodeId) -> bool {
-        (state.stopped | state.restarted) >> robot & 1 != 0
-    }
-
-    /// Whether any robot has.
-    pub const fn has_failures(&self, state: &State) -> bool {
-        state.stopped | state.restarted != 0
+        self.robots(state).filter(|robot| state.is_running(robot.id()))
     }
 
     /// Whether others heed what a node says: it knows which control period this is.
@@ -305,7 +312,7 @@ impl Protocol {
     /// What a node hears if it hears all nodes in range.
     pub(super) fn all_heard_by(&self, state: &State, receiver: NodeId) -> Vec<MessageId> {
         (0..state.locals.len())
-            .filter(|&sender| self.is_running(state, sender))
+            .filter(|&sender| state.is_running(sender))
             .filter(|&sender| self.is_in_range(state, sender, receiver))
             .map(|sender| self.nodes.local(state.locals[sender]).message)
             .collect()
@@ -313,7 +320,7 @@ impl Protocol {
 
     /// What each node hears; those that have stopped hear nothing.
     pub(super) fn all_heard(&self, state: &State) -> Vec<Vec<MessageId>> {
-        let heard_by = |receiver| match self.is_running(state, receiver) {
+        let heard_by = |receiver| match state.is_running(receiver) {
             true => self.all_heard_by(state, receiver),
             false => Vec::new(),
         };
@@ -351,8 +358,8 @@ impl Protocol {
                 let mut others = (0..state.locals.len()).filter(|&other| reached[other]);
                 others.any(|other| self.is_in_range(state, node, other))
             };
-            let next = (0..robots)
-                .find(|&node| !reached[node] && self.is_running(state, node) && joins(node));
+            let next =
+                (0..robots).find(|&node| !reached[node] && state.is_running(node) && joins(node));
             match next {
                 Some(node) => reached[node] = true,
                 None => return reached,
@@ -371,9 +378,9 @@ impl Protocol {
             .locals
             .iter()
             .enumerate()
-            .map(|(node, &local)| match state.stopped >> node & 1 {
-                0 => self.nodes.after(local, stimulus(node)),
-                _ => Ok(local),
+            .map(|(node, &local)| match state.is_running(node) {
+                true => self.nodes.after(local, stimulus(node)),
+                false => Ok(local),
             })
             .collect()
     }
@@ -399,7 +406,7 @@ impl Protocol {
         let places = &self.configuration.places;
         let body = self.nodes.local(state.locals[robot]).robot()?;
         if self.configuration.medium.periods_count()
-            && !(self.is_running(state, robot) && body.may_leave_place())
+            && !(state.is_running(robot) && body.may_leave_place())
         {
             return None;
         }
@@ -408,7 +415,7 @@ impl Protocol {
         held.extend((0..places.robots()).filter(|&other| {
             let other = self.nodes.local(state.locals[other]).robot();
             other.is_some_and(|other| {
-                self.is_running(state, other.id()) && other.tree_parent() == Some(robot)
+                state.is_running(other.id()) && other.tree_parent() == Some(robot)
             })
         }));
         let holds = |place: &PlaceId| {
@@ -422,11 +429,11 @@ impl Protocol {
     fn is_in_contact(&self, state: &State, robot: NodeId) -> bool {
         let body = |node: NodeId| self.nodes.local(state.locals[node]).robot();
         let here = self.place_of(state, robot);
-        self.is_running(state, robot)
+        state.is_running(robot)
             && body(robot).is_some_and(|mover| !mover.is_parked() && mover.goal().is_some())
             && (0..self.configuration.places.robots()).any(|other| {
                 other != robot
-                    && self.is_running(state, other)
+                    && state.is_running(other)
                     && self.place_of(state, other) == here
                     && body(other).is_some_and(|it| it.is_parked() || it.stands_in_team())
             })
@@ -456,7 +463,7 @@ impl Protocol {
             return Ok(found);
         }
         for robot in 0..self.configuration.places.robots() {
-            let may_move = state.moved >> robot & 1 == 0;
+            let may_move = !state.has_moved(robot);
             if let Some(place) = self.next_place(state, robot).filter(|_| may_move) {
                 let mut next = self.one(state, robot, Stimulus::Move(place))?;
                 if period.is_some() {
@@ -533,7 +540,7 @@ impl Protocol {
     fn failures(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = Vec::new();
         for robot in 0..self.configuration.places.robots() {
-            let is_running = self.is_running(state, robot);
+            let is_running = state.is_running(robot);
             if is_running && state.faults.stops > 0 {
                 let mut next = state.clone();
                 next.faults.stops -= 1;

@@ -70,8 +70,8 @@ pub(super) fn flow_failure(
 ) -> Halt {
     let (from, to) = (since.seconds(), reason.at.map(|at| (since + Moment::from(at)).seconds()));
     let reason = match to {
-        Some(to) => format!("{} at {to} s", reason.text),
-        None => format!("{} in the flow that begins at {from} s", reason.text),
+        Some(to) => format!("at {to} s, {}", reason.text),
+        None => format!("in the flow that begins at {from} s, {}", reason.text),
     };
     Failure::Flow { locations: standing.names(&group.components), reason }.into()
 }

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::super::beacon::{Beacon, Notice};
-use super::super::robot::Numbers;
-use super::super::roll::Roll;
 use super::attendance::Attendee;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS};
 use crate::automaton::TransitionError;
+use crate::network::beacon::{Beacon, Notice};
+use crate::network::robot::Numbers;
+use crate::network::roll::Roll;
 
 impl AccessPoint {
     /// The beacon that the access point would send now, without what matters only when time passes.

@@ -14,8 +14,8 @@ use crate::automaton::TransitionError;
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer};
 
-use super::super::roll::{Absent, Roll};
 use super::AccessPoint;
+use crate::network::roll::{Absent, Roll};
 
 /// Control periods after which a robot that is not heard of is missed.
 pub(in crate::network) const PATIENCE: u32 = 8;
@@ -315,16 +315,12 @@ impl AccessPoint {
 
     /// The robots that it has heard of and that are gone.
     pub(super) fn gone(&self) -> Vec<NodeId> {
-        let attendees = self.attendees.iter().enumerate();
-        let is_gone = |it: &Attendee| it.known && it.is_gone();
-        attendees.filter(|(_, attendee)| is_gone(attendee)).map(|(robot, _)| robot).collect()
+        self.robots_that(|it| it.known && it.is_gone()).collect()
     }
 
     /// The robots that do not take part.
     pub(super) fn absent_robots(&self) -> impl Iterator<Item = NodeId> {
-        let attendees = self.attendees.iter().enumerate();
-        let is_absent = |it: &Attendee| it.standing.location() != Attendance::Present;
-        attendees.filter(move |(_, attendee)| is_absent(attendee)).map(|(robot, _)| robot)
+        self.robots_that(|it| it.standing.location() != Attendance::Present)
     }
 
     /// Whether robots do not take part.
@@ -334,8 +330,16 @@ impl AccessPoint {
 
     /// The robots that take part, as far as it knows.
     pub(super) fn attending(&self) -> IdSet {
+        self.robots_that(Attendee::takes_part).collect()
+    }
+
+    /// The robots whose attendance is such.
+    pub(super) fn robots_that(
+        &self,
+        are_such: impl Fn(&Attendee) -> bool,
+    ) -> impl Iterator<Item = NodeId> {
         let attendees = self.attendees.iter().enumerate();
-        attendees.filter(|(_, attendee)| attendee.takes_part()).map(|(robot, _)| robot).collect()
+        attendees.filter(move |(_, it)| are_such(it)).map(|(robot, _)| robot)
     }
 }
 

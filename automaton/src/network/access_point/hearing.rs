@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use pleach_discrete::network::NodeId;
 
-use super::super::beacon::Beacon;
-use super::super::robot::ROUNDS_TO_BE_HEARD;
-use super::super::roll::{Roll, Wreck};
 use super::AccessPoint;
+use crate::network::beacon::Beacon;
+use crate::network::robot::ROUNDS_TO_BE_HEARD;
+use crate::network::roll::{Roll, Wreck};
 
 /// A node in range.
 #[derive(Clone, Debug)]

@@ -6,18 +6,17 @@
 
 #[cfg(feature = "abstraction")]
 mod abstraction;
-
-use std::sync::Arc;
-
-use pleach_continuous::Point;
-use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId};
-
 mod attendance;
 mod hearing;
 mod rounds;
 mod service;
 #[cfg(test)]
 mod tests;
+
+use std::sync::Arc;
+
+use pleach_continuous::Point;
+use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId};
 
 use super::beacon::{Announced, Beacon, Bulletin, CallRoute, LastBeacon, Notice, Reports};
 use super::member::{NodeOutputs, Sense};
@@ -47,6 +46,10 @@ const ROUNDS_UNTIL_ROSTER_SETTLES: usize = 8;
 /// An election takes at most this many times the rounds that a message can travel: redundant
 /// robots wait twice that long for the path to the caller before they place their token.
 const PATIENCE_WITH_ELECTIONS: usize = 4;
+
+/// Two access points at most this share of 2 d_build apart let a robot change over from one to
+/// the other without losing both.
+const CHANGEOVER_SHARE: f64 = 0.98;
 
 /// An access point.
 #[derive(Clone, Debug)]
@@ -515,10 +518,6 @@ impl AccessPoint {
         self.bulletin.notice()
     }
 }
-
-/// Two access points at most this share of 2 d_build apart let a robot change over from one to
-/// the other without losing both.
-const CHANGEOVER_SHARE: f64 = 0.98;
 
 impl Node for AccessPoint {
     type Message = Message;

@@ -8,11 +8,11 @@ use pleach_guards::{Guard, network::control as guards};
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Flow, Transfer};
 
-use super::super::act::{Act, acting};
-use super::super::member::NodeOutputs;
-use super::super::robot::RobotError;
-use super::super::service::{Listening, Resting, Rounds};
 use super::AccessPoint;
+use crate::network::act::{Act, acting};
+use crate::network::member::NodeOutputs;
+use crate::network::robot::RobotError;
+use crate::network::service::{Listening, Resting, Rounds};
 
 /// The automaton of an access point's control period.
 pub type RoundAutomaton = Automaton<Round, RoundEvent, AccessPoint>;

@@ -8,15 +8,15 @@ use pleach_guards::{Guard, network::service as guards};
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer};
 
-use super::super::beacon::{Announcement, Bulletin, Notice};
-use super::super::order::Errand;
-use super::super::phrase;
-use super::super::record::{MissionEvent, Outcome};
-use super::super::roll::why_absent;
-use super::super::service::{Announced, Done, Electing, Gathering, Over, Serving, UnderWay};
-use super::super::shared::Shared;
 use super::attendance::Attendee;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS};
+use crate::network::beacon::{Announcement, Bulletin, Notice};
+use crate::network::order::Errand;
+use crate::network::phrase;
+use crate::network::record::{MissionEvent, Outcome};
+use crate::network::roll::why_absent;
+use crate::network::service::{Announced, Done, Electing, Gathering, Over, Serving, UnderWay};
+use crate::network::shared::Shared;
 
 /// A task is announced again at most this many times because robots that are heard of do not answer:
 /// one that restarts does not know of the election under way, or knows no way to an access point yet.
@@ -226,10 +226,7 @@ impl AccessPoint {
     fn newcomers(&self) -> impl Iterator<Item = NodeId> {
         let pursued = self.announced();
         let is_new = move |robot| pursued.is_some_and(|it| !it.roster.contains(robot));
-        let attendees = self.attendees.iter().enumerate();
-        attendees
-            .filter(move |&(robot, it)| it.takes_part() && is_new(robot))
-            .map(|(robot, _)| robot)
+        self.robots_that(Attendee::takes_part).filter(move |&robot| is_new(robot))
     }
 
     /// The robots that take part in the elections for its task and knew no way to an access point when it was

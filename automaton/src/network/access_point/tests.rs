@@ -7,20 +7,20 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Election, IdSet, NodeId, Post, PostId};
 use serde_json::json;
 
-use super::super::beacon::{Announcement, Beacon, Bulletin, Notice, Reports};
-use super::super::duty::{Duty, Held, Path, Standby, Station};
-use super::super::message::Message;
-use super::super::order::Order;
-use super::super::record::{MissionEvent, Outcome};
-use super::super::roll::{Absent, Roll, Wreck};
-use super::super::scenario::{Scenario, Task};
-use super::super::service::{Announced, Done, Electing, Serving, UnderWay};
-use super::super::shared::Shared;
-use super::super::site::Site;
 use super::attendance::{Attendee, Gone, Present, Returning, Standing, Suspended, TaskRecord};
 use super::hearing::Heard;
 use super::{AccessPoint, ROUNDS_UNTIL_ROSTER_SETTLES};
 use crate::located::{Current, Place as _};
+use crate::network::beacon::{Announcement, Beacon, Bulletin, Notice, Reports};
+use crate::network::duty::{Duty, Held, Path, Standby, Station};
+use crate::network::message::Message;
+use crate::network::order::Order;
+use crate::network::record::{MissionEvent, Outcome};
+use crate::network::roll::{Absent, Roll, Wreck};
+use crate::network::scenario::{Scenario, Task};
+use crate::network::service::{Announced, Done, Electing, Serving, UnderWay};
+use crate::network::shared::Shared;
+use crate::network::site::Site;
 use crate::node::{Input, Node as _, Outputs};
 
 /// The first access point of a hall, which hears robots 0 and 1.

@@ -6,12 +6,12 @@
 
 use pleach_discrete::network::{Anchor, Election, IdSet, NoticeId, Post};
 
-use super::super::beacon::{Announced, Announcement, Beacon, Notice};
-use super::super::duty::{Duty, Hop};
-use super::super::roll::Roll;
-use super::super::scenario::MOST_PERIODS;
-use super::super::site::Site;
 use super::{FlowGrant, Message};
+use crate::network::beacon::{Announced, Announcement, Beacon, Notice};
+use crate::network::duty::{Duty, Hop};
+use crate::network::roll::Roll;
+use crate::network::scenario::MOST_PERIODS;
+use crate::network::site::Site;
 
 /// Tasks have numbers below this.
 const MOST_TASKS: usize = 1 << 16;

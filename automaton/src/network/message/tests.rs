@@ -10,19 +10,19 @@ use pleach_discrete::network::{
 };
 use serde_json::{Value, json};
 
-use super::super::beacon::{Announcement, Branch, Notice, TeamReport};
-use super::super::duty::{
-    AwaitingRelease, Bound, Duty, Following, Held, Hop, Junction, Leading, Leaf, Path, PathPlace,
-    Relay, Shifting, Standby, Station, Waiting,
-};
-use super::super::order::Errand;
-use super::super::record::Outcome;
-use super::super::robot::{GrantedPart, RequestNumber};
-use super::super::roll::{Absent, Wreck};
-use super::super::shared::Shared;
 use super::bounds::Bounds;
 use super::*;
 use crate::located::Place as _;
+use crate::network::beacon::{Announcement, Branch, Notice, TeamReport};
+use crate::network::duty::{
+    AwaitingRelease, Bound, Duty, Following, Held, Hop, Junction, Leading, Leaf, Path, PathPlace,
+    Relay, Shifting, Standby, Station, Waiting,
+};
+use crate::network::order::Errand;
+use crate::network::record::Outcome;
+use crate::network::robot::{GrantedPart, RequestNumber};
+use crate::network::roll::{Absent, Wreck};
+use crate::network::shared::Shared;
 
 const CALL: NoticeId = NoticeId::new(7, 12);
 

@@ -20,13 +20,13 @@ use pleach_continuous::geometry::{Disc, HalfPlane};
 use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::NodeId;
 
-use super::super::access_point::PATIENCE;
-use super::super::beacon::{Beacon, Branch};
-use super::super::roll::{Roll, Wreck};
-use super::super::scenario::Settings;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::{MARGIN, ROUNDING};
+use crate::network::access_point::PATIENCE;
+use crate::network::beacon::{Beacon, Branch};
+use crate::network::roll::{Roll, Wreck};
+use crate::network::scenario::Settings;
 
 /// A robot that is gone is at most this many steps from where it was heard last, even if its last moves are
 /// not known.

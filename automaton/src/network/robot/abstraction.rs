@@ -11,12 +11,12 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Confirmation, IdSet, NodeId, NoticeId, PostId, Subgroup};
 
-use super::super::beacon::Beacon;
-use super::super::duty::Path;
-use super::super::roll::{Roll, Wreck};
 use super::facts::STATIONARY_WINDOW;
 use super::hearing::PATIENCE_WITH_CHILDREN;
 use super::{FIRST_NEW_POST, POSTS_OF_A_PERIOD, Robot, RobotError, RobotView};
+use crate::network::beacon::Beacon;
+use crate::network::duty::Path;
+use crate::network::roll::{Roll, Wreck};
 
 /// Where control periods count, confirmations that are older than this many count as this old: robots
 /// that have had none for so long are cut off, and look in vain.

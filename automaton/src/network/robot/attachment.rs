@@ -14,12 +14,12 @@ use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
-use super::super::beacon::{Announcement, Notice, Reports};
-use super::super::duty::Station;
-use super::super::shared::renew;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
+use crate::network::beacon::{Announcement, Notice, Reports};
+use crate::network::duty::Station;
+use crate::network::shared::renew;
 
 /// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
 const REATTACHMENT_GAIN: f64 = 0.05;

@@ -11,13 +11,13 @@ use pleach_guards::{Guard, network::control as guards};
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Flow, Transfer};
 
-use super::super::act::{self, acting};
-use super::super::control::{
+use super::{Robot, RobotError};
+use crate::network::act::{self, acting};
+use crate::network::control::{
     Beacons, Control, Flows, Moving, Multipliers, Negotiation, OldFlows, Planning, Reserving,
     Sweeps,
 };
-use super::super::member::NodeOutputs;
-use super::{Robot, RobotError};
+use crate::network::member::NodeOutputs;
 
 /// The automaton of the control period.
 pub type ControlAutomaton = Automaton<Stage, StageEvent, Robot>;

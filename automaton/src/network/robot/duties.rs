@@ -16,16 +16,16 @@ use pleach_guards::{EvaluationError, Guard};
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Jump, Transfer, TransitionError};
 
-use super::super::beacon::Notice;
-use super::super::duty::{
-    AwaitingRelease, Bound, Duty, Following, Held, Holder, Hop, Junction, Leading, Leaf, Relay,
-    Shifting, Standby, Station, Waiting,
-};
-use super::super::mission::Walk;
-use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::target::targets;
+use crate::network::beacon::Notice;
+use crate::network::duty::{
+    AwaitingRelease, Bound, Duty, Following, Held, Holder, Hop, Junction, Leading, Leaf, Relay,
+    Shifting, Standby, Station, Waiting,
+};
+use crate::network::mission::Walk;
+use crate::network::record::MissionEvent;
 
 /// The automaton of a robot's duty.
 pub type DutyAutomaton = Automaton<Activity, DutyEvent, Robot>;

@@ -11,9 +11,9 @@ use pleach_guards::network::exchange as guards;
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
-use super::super::duty::Duty;
-use super::super::record::MissionEvent;
 use super::Robot;
+use crate::network::duty::Duty;
+use crate::network::record::MissionEvent;
 
 /// The automaton of the exchange of duties.
 pub type ExchangeAutomaton = Automaton<ExchangeStage, ExchangeEvent, Robot>;

@@ -6,13 +6,13 @@
 use pleach_continuous::network::motion::FEASIBILITY_TOLERANCE;
 use pleach_discrete::network::{Activity, MissionStep, NoticeId, Phase, Post};
 
-use super::super::beacon::Notice;
-use super::super::duty::{AwaitingRelease, Duty, Waiting};
-use super::super::scenario::RoutingMethod;
 use super::Robot;
 use super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::lineage::HeardWay;
 use super::rounds::SweepRound;
+use crate::network::beacon::Notice;
+use crate::network::duty::{AwaitingRelease, Duty, Waiting};
+use crate::network::scenario::RoutingMethod;
 
 /// A robot gives up when it has made no progress for this many times the longest regular wait.
 const PATIENCE: f64 = 4.0;

@@ -7,11 +7,11 @@ use pleach_continuous::Point;
 use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
-use super::super::beacon::Beacon;
-use super::super::duty::{Duty, Station};
-use super::super::roll::Wreck;
-use super::super::site::Site;
 use super::Robot;
+use crate::network::beacon::Beacon;
+use crate::network::duty::{Duty, Station};
+use crate::network::roll::Wreck;
+use crate::network::site::Site;
 
 /// A node that the robot hears, R_ij > 0.
 #[derive(Clone, Debug)]

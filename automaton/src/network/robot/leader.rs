@@ -5,11 +5,11 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId, Phase, Post};
 
-use super::super::beacon::{Announced, Notice};
-use super::super::mission::{Advance, LeaderElection};
-use super::super::record::MissionEvent;
 use super::Robot;
 use super::mission::{Effects, MissionEffect};
+use crate::network::beacon::{Announced, Notice};
+use crate::network::mission::{Advance, LeaderElection};
+use crate::network::record::MissionEvent;
 
 /// Distances in bids are compared in units of this share of the full range l: finer differences
 /// are ties, which go to the higher index.

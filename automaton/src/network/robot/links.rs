@@ -8,9 +8,9 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::Geodesic;
 use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
-use super::super::duty::{Duty, Hop, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
+use crate::network::duty::{Duty, Hop, Shifting};
 
 /// Control periods within which both robots of an exchange are heard with their new posts, while some messages
 /// get through.

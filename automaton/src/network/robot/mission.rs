@@ -15,15 +15,15 @@ use pleach_guards::{Guard, network::mission as guards};
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
-use super::super::beacon::{Announced, CallRoute, Notice};
-use super::super::duty::Duty;
-use super::super::mission::{
-    Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
-};
-use super::super::record::MissionEvent;
-use super::super::shared::{Shared, merge_election};
 use super::duties::Label;
 use super::{Robot, leader, path, recruit, team};
+use crate::network::beacon::{Announced, CallRoute, Notice};
+use crate::network::duty::Duty;
+use crate::network::mission::{
+    Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
+};
+use crate::network::record::MissionEvent;
+use crate::network::shared::{Shared, merge_election};
 
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;

@@ -9,12 +9,12 @@ use pleach_continuous::network::motion::{Motion, MotionProblem};
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::Phase;
 
-use super::super::duty::Duty;
-use super::super::scenario::MotionSolver;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
 use crate::automaton::TransitionError;
+use crate::network::duty::Duty;
+use crate::network::scenario::MotionSolver;
 
 /// A robot this share of ρ from the reference of its post has settled.
 const SETTLED: f64 = 0.02;

@@ -17,12 +17,12 @@ use pleach_continuous::network::acceptance::{Capsule, Segment, is_acceptable};
 use pleach_discrete::network::consent::all_consent;
 use pleach_discrete::network::{NodeId, Stage};
 
-use super::super::member::NodeOutputs;
-use super::super::message::Message;
-use super::super::roll::Wreck;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
+use crate::network::member::NodeOutputs;
+use crate::network::message::Message;
+use crate::network::roll::Wreck;
 
 impl Robot {
     /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.

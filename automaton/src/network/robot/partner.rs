@@ -16,10 +16,10 @@
 use pleach_continuous::Point;
 use pleach_discrete::network::{Agreement, NodeId, Offer, Phase, Post, PostKind, Reply};
 
-use super::super::beacon::{Announced, TeamReport};
-use super::super::duty::{Duty, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
+use crate::network::beacon::{Announced, TeamReport};
+use crate::network::duty::{Duty, Shifting};
 
 /// Two robots touch when they are this many ρ apart; they never come closer than 2ρ.
 const CONTACT: f64 = 2.6;

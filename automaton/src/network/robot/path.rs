@@ -7,13 +7,13 @@ use pleach_discrete::network::{
     Agreement, Anchor, NodeId, NoticeId, Post, PostId, PostKind, Subgroup,
 };
 
-use super::super::beacon::Notice;
-use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
-use super::super::mission::{Advance, PathAgreement, Shift};
-use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
+use crate::network::beacon::Notice;
+use crate::network::duty::{Duty, Hop, Path, Shifting, Waiting};
+use crate::network::mission::{Advance, PathAgreement, Shift};
+use crate::network::record::MissionEvent;
 
 /// The path Σ is known: its members report whether they are break points.
 pub(super) fn vote<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<PathAgreement> {

@@ -6,14 +6,14 @@ use pleach_discrete::network::{Activity, Bid, Election, IdSet, NoticeId, Phase};
 
 use crate::located::Place as _;
 
-use super::super::beacon::{Announcement, Beacon, CallRoute, Notice, TeamReport};
-use super::super::duty::{Hop, Path, PathPlace};
-use super::super::mission::{Advance, PathAgreement, RecruitElection, Standstill};
-use super::super::record::{MissionEvent, Outcome};
-use super::super::shared::Shared;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
+use crate::network::beacon::{Announcement, Beacon, CallRoute, Notice, TeamReport};
+use crate::network::duty::{Hop, Path, PathPlace};
+use crate::network::mission::{Advance, PathAgreement, RecruitElection, Standstill};
+use crate::network::record::{MissionEvent, Outcome};
+use crate::network::shared::Shared;
 
 /// The ranks of bids, the lowest first.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -32,10 +32,10 @@ use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Lease, Spare};
 use serde::{Deserialize, Serialize};
 
-use super::super::member::NodeOutputs;
-use super::super::message::Message;
 use super::Robot;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
+use crate::network::member::NodeOutputs;
+use crate::network::message::Message;
 
 #[cfg(test)]
 mod lemma;

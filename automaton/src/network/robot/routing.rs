@@ -15,11 +15,11 @@ use pleach_continuous::network::routing::local::{LinkOffer, local_minimiser, wei
 use pleach_continuous::network::routing::repair::{Share, meet_demand};
 use pleach_discrete::network::NodeId;
 
-use super::super::member::NodeOutputs;
-use super::super::message::Message;
-use super::super::record::MissionEvent;
-use super::super::scenario::RoutingMethod;
 use super::Robot;
+use crate::network::member::NodeOutputs;
+use crate::network::message::Message;
+use crate::network::record::MissionEvent;
+use crate::network::scenario::RoutingMethod;
 
 /// Links with less reliability than this carry nothing unless they belong to the tree: a step of
 /// both ends must not be able to break a link in use.

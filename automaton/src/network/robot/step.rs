@@ -11,13 +11,13 @@ use std::sync::Arc;
 
 use pleach_discrete::network::{NodeId, Stage};
 
-use super::super::control::Control;
-use super::super::member::{NodeOutputs, Sense};
-use super::super::message::Message;
-use super::super::record::MissionEvent;
 use super::Robot;
 use crate::automaton::{InvariantError, TransitionError};
 use crate::located::Place as _;
+use crate::network::control::Control;
+use crate::network::member::{NodeOutputs, Sense};
+use crate::network::message::Message;
+use crate::network::record::MissionEvent;
 use crate::node::{Input, Node};
 
 /// More transitions than this at one instant are taken for endless; a mission has about ten

@@ -8,8 +8,8 @@ use crate::automaton::TransitionError;
 use crate::law::Laws;
 use crate::located::Place as _;
 
-use super::super::duty::{Duty, Hop};
 use super::Robot;
+use crate::network::duty::{Duty, Hop};
 
 /// Where robots go, by what they do.
 pub type Targets = Laws<Activity, Robot, Point>;

@@ -6,17 +6,17 @@ use pleach_continuous::geometry::Disc;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Anchor, NodeId, Phase, Post, PostId, PostKind};
 
-use super::super::beacon::{Notice, TeamReport};
-use super::super::duty::Hop;
-use super::super::mission::{Advance, Ended, Idle};
-use super::super::record::{MissionEvent, Outcome};
-use super::super::roll::why_absent;
-use super::super::scenario::Strategy;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect, end};
 use super::motion::PERSISTENCE;
 use super::way::KEEP_OUT;
+use crate::network::beacon::{Notice, TeamReport};
+use crate::network::duty::Hop;
+use crate::network::mission::{Advance, Ended, Idle};
+use crate::network::record::{MissionEvent, Outcome};
+use crate::network::roll::why_absent;
+use crate::network::scenario::Strategy;
 
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
 const STAND_OFF: f64 = 2.2;

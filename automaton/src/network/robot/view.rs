@@ -7,13 +7,13 @@ use pleach_discrete::network::{
     ExchangeStage, IdSet, NodeId, NoticeId, Phase, Role, Stage, Subgroup,
 };
 
-use super::super::beacon::{Beacon, Notice, TeamReport};
-use super::super::duty::Duty;
-use super::super::mission::Mission;
 use super::links::TreeLink;
 use super::routing::RouteLink;
 use super::{Facts, Robot};
 use crate::located::Place as _;
+use crate::network::beacon::{Beacon, Notice, TeamReport};
+use crate::network::duty::Duty;
+use crate::network::mission::Mission;
 use crate::node::Observed;
 
 /// A read-only view of a robot, for observers; no node can ask for one.

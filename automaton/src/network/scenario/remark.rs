@@ -6,10 +6,10 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{Neighbours, Repair};
 use pleach_continuous::network::LinkReliability;
 
-use super::super::robot::ROUNDS_TO_BE_HEARD;
 use super::placement::key_of_repair;
 use super::{Fleet, KeyPath, Settings, ValidScenario};
 use crate::network::Site;
+use crate::network::robot::ROUNDS_TO_BE_HEARD;
 
 /// Something about a valid scenario that its author may not have meant.
 #[derive(Clone, Debug, PartialEq)]

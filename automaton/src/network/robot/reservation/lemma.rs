@@ -3,8 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use super::super::tests::flows::{grants, requests, router};
 use super::*;
+use crate::network::robot::tests::flows::{grants, requests, router};
 
 /// The receiver is robot 5 for the sender, and the sender robot 5 for the receiver.
 const OTHER: NodeId = 5;

@@ -2,11 +2,11 @@
 
 use pleach_discrete::network::{Anchor, IdSet, PostId, Role};
 
-use super::super::super::duty::{Bound, Hop, PathPlace, Waiting};
-use super::super::super::roll::{Absent, Roll};
-use super::super::super::scenario::Strategy;
-use super::super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::*;
+use crate::network::duty::{Bound, Hop, PathPlace, Waiting};
+use crate::network::robot::attachment::PATIENCE_WITH_UNUSED_POSTS;
+use crate::network::roll::{Absent, Roll};
+use crate::network::scenario::Strategy;
 
 /// To what a redundant robot wants to be attached that hears these.
 fn choice(robot: &mut Robot, heard: impl IntoIterator<Item = Beacon>) -> Option<Anchor> {

@@ -2,9 +2,9 @@
 
 use pleach_discrete::network::{Agreement, Election, Phase};
 
-use super::super::super::duty::{Hop, PathPlace};
-use super::super::super::scenario::Strategy;
 use super::*;
+use crate::network::duty::{Hop, PathPlace};
+use crate::network::scenario::Strategy;
 
 /// The strategy of the team.
 fn following(strategy: Strategy) -> Robot {

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
-use super::super::super::mission::{Idle, LeaderElection, Standstill};
-use super::super::super::roll::{Absent, Wreck};
 use super::*;
+use crate::network::mission::{Idle, LeaderElection, Standstill};
+use crate::network::roll::{Absent, Wreck};
 
 /// Robot 0 hears that the task at `place` is announced; its way leads to the access point.
 fn asked(place: Point) -> Robot {

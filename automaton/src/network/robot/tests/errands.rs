@@ -2,11 +2,11 @@
 
 use pleach_discrete::network::{Activity, IdSet, Phase};
 
-use super::super::super::duty::{Bound, Leaf};
-use super::super::super::record::Outcome;
-use super::super::duties::Label;
 use super::*;
 use crate::located::Place as _;
+use crate::network::duty::{Bound, Leaf};
+use crate::network::record::Outcome;
+use crate::network::robot::duties::Label;
 
 /// A post from which task 2 is serviced.
 fn held() -> Held {

@@ -3,10 +3,10 @@
 use pleach_continuous::network::reliability::LinkReliability as _;
 use pleach_discrete::network::MissionStep;
 
-use super::super::super::beacon::Branch;
-use super::super::super::duty::{Hop, PathPlace};
-use super::super::duties::Label;
 use super::*;
+use crate::network::beacon::Branch;
+use crate::network::duty::{Hop, PathPlace};
+use crate::network::robot::duties::Label;
 
 const POSITION_ERROR: f64 = 0.01;
 const MOTION_ERROR: f64 = 0.02;

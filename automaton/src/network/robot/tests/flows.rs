@@ -3,10 +3,10 @@
 use pleach_continuous::network::LinkReliability as _;
 use pleach_discrete::network::reservation::Lease;
 
-use super::super::super::member::NodeOutputs;
-use super::super::super::message::Message;
-use super::super::reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
 use super::*;
+use crate::network::member::NodeOutputs;
+use crate::network::message::Message;
+use crate::network::robot::reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
 use crate::node::Destination;
 
 const LEASE: u32 = 8;

@@ -1,6 +1,6 @@
 //! What becomes of what a robot hears, and of those that it does not hear any more.
 
-use super::super::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
+use crate::network::robot::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
 use pleach_discrete::network::Stage;
 
 use super::*;

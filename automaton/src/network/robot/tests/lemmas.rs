@@ -6,12 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use pleach_discrete::network::path::subgroups;
 use pleach_discrete::network::{Agreement, IdSet};
 
-use super::super::super::duty::{Hop, PathPlace, Waiting};
-use super::super::super::record::Outcome;
-use super::super::super::roll::{Absent, Roll};
-use super::super::{FIRST_NEW_POST, POSTS_OF_A_PERIOD};
 use super::moves::{mover, proposed};
 use super::*;
+use crate::network::duty::{Hop, PathPlace, Waiting};
+use crate::network::record::Outcome;
+use crate::network::robot::{FIRST_NEW_POST, POSTS_OF_A_PERIOD};
+use crate::network::roll::{Absent, Roll};
 
 /// Places of Σ; the last break point is place 2.
 const PLACES: usize = 4;

@@ -24,15 +24,17 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Anchor, Lineage, NodeId, Phase, Post, PostId, PostKind};
 use serde_json::json;
 
-use super::super::beacon::{Announcement, Beacon, Notice};
-use super::super::duty::{Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station};
-use super::super::mission::{Advance, Ended, Mission, RecruitElection, Shift};
-use super::super::roll::Roll;
-use super::super::scenario::{AccessPoint, Scenario};
-use super::super::shared::Shared;
-use super::super::site::Site;
 use super::Robot;
 use crate::located::Current;
+use crate::network::beacon::{Announcement, Beacon, Notice};
+use crate::network::duty::{
+    Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station,
+};
+use crate::network::mission::{Advance, Ended, Mission, RecruitElection, Shift};
+use crate::network::roll::Roll;
+use crate::network::scenario::{AccessPoint, Scenario};
+use crate::network::shared::Shared;
+use crate::network::site::Site;
 
 /// ρ.
 const CLEARANCE: f64 = 0.04;

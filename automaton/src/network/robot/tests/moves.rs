@@ -3,10 +3,10 @@
 use pleach_continuous::network::LinkReliability as _;
 use pleach_continuous::network::acceptance::Segment;
 
-use super::super::super::message::Message;
-use super::super::super::roll::{Absent, Roll, Wreck};
-use super::super::reservation::{FlowGrant, RequestNumber};
 use super::*;
+use crate::network::message::Message;
+use crate::network::robot::reservation::{FlowGrant, RequestNumber};
+use crate::network::roll::{Absent, Roll, Wreck};
 use crate::node::{Destination, Outputs};
 
 /// The leader on its way to the east, called by the roll, and attached to none.

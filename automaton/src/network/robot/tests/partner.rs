@@ -2,10 +2,10 @@
 
 use pleach_discrete::network::{Offer, Reply};
 
-use super::super::super::beacon::TeamReport;
-use super::super::super::roll::Absent;
-use super::super::super::scenario::Strategy;
 use super::*;
+use crate::network::beacon::TeamReport;
+use crate::network::roll::Absent;
+use crate::network::scenario::Strategy;
 
 /// The leader, which has not got on for this long, 0.09 west of a parked robot that bears `held`; the
 /// task is far to the east.

@@ -1,7 +1,7 @@
 //! What a robot senses, and what observers see of it.
 
-use super::super::super::member::Sense;
 use super::*;
+use crate::network::member::Sense;
 use crate::node::{Input, Node, Observed, Outputs};
 
 #[test]

@@ -1,8 +1,8 @@
 //! Ways of fixed posts that are made shorter, so that nodes on them become redundant.
 
-use super::super::super::duty::Junction;
-use super::super::super::scenario::Strategy;
 use super::*;
+use crate::network::duty::Junction;
+use crate::network::scenario::Strategy;
 
 /// Robot 0 holds a fixed post that is attached to post 13, half a unit to the west.
 fn holder(strategy: Strategy) -> Robot {

@@ -2,15 +2,15 @@
 
 use pleach_discrete::network::{Activity, Phase};
 
-use super::super::super::beacon::TeamReport;
-use super::super::super::duty::Bound;
-use super::super::super::record::Outcome;
-use super::super::super::roll::{Absent, Wreck};
-use super::super::super::scenario::Strategy;
-use super::super::Label;
-use super::super::team::SATURATED;
 use super::*;
 use crate::located::Place as _;
+use crate::network::beacon::TeamReport;
+use crate::network::duty::Bound;
+use crate::network::record::Outcome;
+use crate::network::robot::Label;
+use crate::network::robot::team::SATURATED;
+use crate::network::roll::{Absent, Wreck};
+use crate::network::scenario::Strategy;
 
 fn leader() -> Robot {
     let mut robot = robot();

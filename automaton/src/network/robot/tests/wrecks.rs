@@ -1,8 +1,8 @@
 //! Robots that do not take part: where others keep off, and where one stays that may be taken for gone.
 
-use super::super::super::beacon::Branch;
-use super::super::super::roll::{Absent, Wreck};
 use super::*;
+use crate::network::beacon::Branch;
+use crate::network::roll::{Absent, Wreck};
 
 /// Robot 1 is gone, and was heard last so far to the east.
 fn beside_wreck(away: f64) -> Robot {

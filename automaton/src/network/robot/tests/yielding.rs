@@ -1,7 +1,7 @@
 //! When a robot asks for way, and where a parked one steps aside.
 
-use super::super::super::beacon::TeamReport;
 use super::*;
+use crate::network::beacon::TeamReport;
 
 /// A mover west of robot 0 that wants to go past it to the east.
 fn asking(away: f64) -> Beacon {
