@@ -38,7 +38,7 @@
 //! let exploration = explore(&mut Turns, &[small], 100)?;
 //! assert_eq!(exploration.states().len(), 16);
 //! assert!(exploration.violations().is_empty());
-//! assert!(exploration.traps(|state| *state == [3, 3], Fairness::Weak).is_empty());
+//! assert!(exploration.traps(|state| *state == [3, 3], |_| false, Fairness::Weak).is_empty());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

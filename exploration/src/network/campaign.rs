@@ -223,7 +223,7 @@ impl Findings {
         };
         let ended = |state: &State| has_ended(protocol, state);
         let violations = exploration.violations().iter();
-        let traps = || exploration.traps(ended, protocol.fairness());
+        let traps = || exploration.traps(ended, Action::is_optional, protocol.fairness());
         let trap = exploration.is_complete().then(traps).and_then(|traps| traps.first().copied());
         let (states, transitions) = (exploration.states().len(), exploration.transition_count());
         Findings {

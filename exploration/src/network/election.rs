@@ -130,7 +130,7 @@ mod tests {
                     let exploration = explore(&mut ballot, &[WINNER], 10_000).unwrap();
                     assert_eq!(exploration.violations(), []);
                     let done = |views: &Views| ballot.is_over_everywhere(views);
-                    assert!(exploration.traps(done, Fairness::Weak).is_empty());
+                    assert!(exploration.traps(done, |_| false, Fairness::Weak).is_empty());
                     states += exploration.states().len();
                 }
             }

@@ -87,6 +87,23 @@ pub enum Action {
     Announce,
 }
 
+impl Action {
+    /// Whether this may stay away for ever: faults, and robots that are in each other's way.
+    pub const fn is_optional(&self) -> bool {
+        use Action::{Copy, Delay, Echo, Lose, Restart, Stop, Touch};
+        matches!(
+            self,
+            Lose { .. }
+                | Delay { .. }
+                | Copy { .. }
+                | Echo { .. }
+                | Touch(_)
+                | Stop(_)
+                | Restart(_)
+        )
+    }
+}
+
 impl fmt::Display for Action {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

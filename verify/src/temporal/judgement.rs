@@ -8,7 +8,7 @@ use pleach_guards::Predicate;
 
 use super::formula::{Formula, Window};
 use super::samples::{Reading, Recording, Samples, Side, TemporalError};
-use super::signal::{Signal, Time, Value};
+use super::signal::{ROUNDING, Signal, Time, Value};
 use super::sliding::{Reach, infimum};
 use super::until::{supremum, until};
 
@@ -123,7 +123,7 @@ impl Formula {
             (Status::Satisfied, Witness::of(worst, &recording))
         } else if value(Reading::Truth, Side::Best).margin < 0.0 {
             (Status::Violated, Witness::of(best, &recording))
-        } else if self.horizon() <= recording.duration() {
+        } else if self.horizon() * (1.0 - ROUNDING) <= recording.duration() {
             (Status::Undecided, None)
         } else {
             (Status::Inconclusive, None)
@@ -149,11 +149,10 @@ impl Witness {
     fn of(value: Value, recording: &Recording) -> Option<Witness> {
         let origin = value.origin?;
         let (Time::Fixed(t) | Time::Moving(t)) = origin.time;
-        let at = HybridTime { t, j: origin.jumps };
         let predicate = recording.predicate(origin.literal).clone();
+        let (at, margin) = recording.margin(origin.literal, origin.jumps, t);
         // Adding 0 turns −0 into 0.
-        let margin = recording.margin(origin.literal, at) + 0.0;
-        Some(Witness { at, predicate, margin })
+        Some(Witness { at, predicate, margin: margin + 0.0 })
     }
 }
 

@@ -233,13 +233,19 @@ impl Recording {
         &self.literals[literal].predicate
     }
 
-    /// The margin of the predicate at place `literal` at the instant `at`.
-    pub fn margin(&self, literal: usize, at: HybridTime) -> f64 {
+    /// The instant of the phase after `jumps` jumps that is nearest to a time, which rounding may have put beside the
+    /// phase, and the margin of the predicate at place `literal` there.
+    pub fn margin(&self, literal: usize, jumps: u32, t: f64) -> (HybridTime, f64) {
         let looks = &self.literals[literal].account.looks;
-        let last = looks.partition_point(|look| look.at <= at).saturating_sub(1);
-        let (from, to) = (looks[last], looks.get(last + 1).map_or(looks[last], |next| *next));
+        let phase = looks.partition_point(|look| look.at.j < jumps)
+            ..looks.partition_point(|look| look.at.j <= jumps);
+        let phase = if phase.is_empty() { looks } else { &looks[phase] };
+        let after = phase.partition_point(|look| look.at.t <= t);
+        let (from, to) = (phase[after.saturating_sub(1)], phase[after.min(phase.len() - 1)]);
+        let t = t.clamp(phase[0].at.t, phase[phase.len() - 1].at.t);
         let flow = Flow { start: from.margin, end: to.margin, origin: None };
-        flow.at((from.at.t, to.at.t), at.t).margin
+        let margin = flow.at((from.at.t, to.at.t), t).margin;
+        (HybridTime { t, j: from.at.j }, margin)
     }
 
     /// The value `margin` at all times.
@@ -328,15 +334,26 @@ fn lower_bound(least: f64, rate: Interval, span: Span, margins: [f64; 2]) -> Vec
     // Down from the first margin as fast as can be, and up to the last.
     let turn = (first - last + rise * width) / (rise - fall);
     let bottom = first + fall * turn;
-    let mut lines = vec![(0.0, first)];
-    if bottom >= least {
-        lines.push((turn, bottom.min(first.max(last))));
+    let turns = if bottom >= least {
+        vec![(turn, bottom.min(first.max(last)))]
     } else {
-        lines.extend([((least - first) / fall, least), (width - (last - least) / rise, least)]);
+        vec![((least - first) / fall, least), (width - (last - least) / rise, least)]
+    };
+    if turns.iter().any(|(after, _)| after.is_nan()) {
+        return vec![(span.0, [least; 2])];
     }
-    lines.retain(|(after, _)| *after == 0.0 || span.0 < span.0 + after && span.0 + after < span.1);
-    let ends = lines.iter().skip(1).map(|(_, value)| *value).chain([last]);
-    lines.iter().zip(ends).map(|((after, start), end)| (span.0 + after, [*start, end])).collect()
+    // A turn so soon after the beginning, or before the end, that rounding puts it there is the limit there.
+    let (mut points, mut end) = (vec![(span.0, first)], last);
+    for (after, value) in turns {
+        let t = span.0 + after;
+        match points.last_mut() {
+            Some((before, lowest)) if t <= *before => *lowest = value.min(*lowest),
+            _ if t >= span.1 => end = value.min(end),
+            _ => points.push((t, value)),
+        }
+    }
+    let ends = points.iter().skip(1).map(|(_, value)| *value).chain([end]);
+    points.iter().zip(ends).map(|((t, start), end)| (*t, [*start, end])).collect()
 }
 
 /// The account of a predicate whose margin is linear between samples.
@@ -447,5 +464,24 @@ fn holds_on_the_boundary(predicate: &Predicate) -> bool {
             matches!(relation, Relation::AtMost | Relation::AtLeast)
         }
         _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A margin that rises by 2 in no time may do so right before the end, or right after the beginning.
+    #[test]
+    fn turns_that_round_to_the_ends_bound_the_margin() {
+        let interval = |lower, upper| Interval::new(lower, upper).expect("it is not empty");
+        let passage = Passage {
+            truth: Truth::Undecided,
+            range: interval(-1.0, 1.0),
+            rate: interval(0.0, 1e18),
+        };
+        let lines = |side| bound(&passage, (0.25, 0.5), [-1.0, 1.0], side);
+        assert_eq!(lines(Side::Worst), [(0.25, [-1.0, -1.0])]);
+        assert_eq!(lines(Side::Best), [(0.25, [1.0, 1.0])]);
     }
 }

@@ -157,7 +157,7 @@ impl Flow {
 
 /// Sums and differences of a time and the bounds of windows agree to within this many parts of the
 /// larger of the two: some roundings of 2⁻⁵³ each.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Knot {
     /// How many seconds the knot lies after what is `ahead` seconds after `now`: 0 where only
@@ -201,10 +201,13 @@ impl Signal {
         }
     }
 
-    /// The knots from `next` on that are `ahead` seconds ahead at `now`.
+    /// The knot `next` and those of the same time, if they are `ahead` seconds ahead at `now`. Rounding may put `now`
+    /// beside them; knots that rounding does not bring together are met one after the other.
     pub fn met(&self, next: usize, ahead: f64, now: f64) -> Range<usize> {
-        let count =
-            self.knots[next..].iter().take_while(|knot| knot.lead(ahead, now) == 0.0).count();
+        let rest = &self.knots[next..];
+        let is_met = |knot: &&Knot| knot.lead(ahead, now) == 0.0;
+        let time = rest.first().filter(is_met).map(|knot| knot.t - ahead);
+        let count = rest.iter().take_while(|knot| Some(knot.t - ahead) == time).count();
         next..next + count
     }
 
@@ -229,7 +232,7 @@ impl Signal {
                 _ => self.seen(next, ahead, (now, now)).first(now),
             };
             next = met.end;
-            let upcoming = self.meets(next, ahead);
+            let upcoming = self.meets(next, ahead).max(now);
             let flow = self.seen(next, ahead, (now, upcoming));
             result.push(Knot { t: now, value, flow: Some(flow) });
             if upcoming == f64::INFINITY {

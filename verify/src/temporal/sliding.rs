@@ -90,7 +90,8 @@ impl Sweep<'_> {
         self.left = self.signal.met(self.left, self.reach.start, now).end;
         self.right = self.signal.met(self.right, self.reach.end, now).end;
         let left = self.signal.meets(self.left, self.reach.start);
-        left.min(self.signal.meets(self.right, self.reach.end))
+        // A knot that rounding alone has brought together with the last one is met at the same time.
+        left.min(self.signal.meets(self.right, self.reach.end)).max(now)
     }
 
     /// What the infimum over `span` is the lowest of, until an end of the window meets a knot.

@@ -82,6 +82,31 @@ fn both_sides_of_a_jump_count_and_the_witness_tells_which() {
     assert_eq!((witness.at, witness.margin), (HybridTime { t: 1.0, j: 1 }, -3.0));
 }
 
+/// x rises at 1 s, and a rounding later y falls: at no instant are both high.
+#[test]
+fn jumps_that_are_a_rounding_apart_do_not_meet() {
+    let soon = 1f64.next_up();
+    let samples = [(0.0, -1.0, -1.0), (1.0, -1.0, 1.0), (soon, 1.0, -1.0), (3.0, 1.0, -1.0)]
+        .map(|(t, x, y)| (t, [("x", x), ("y", y)]));
+    let high = |name: &str| Formula::holds(variable(name).at_least(0.5));
+    for x in [high("x"), always(within(0.0, 0.0).unwrap(), high("x"))] {
+        let both = eventually(within(0.0, 2.0).unwrap(), x & high("y"));
+        let judgement = both.judge(&samples).unwrap();
+        assert_eq!(judgement.status, Status::Violated, "{judgement}");
+    }
+}
+
+/// 0.9 − 0.3 + 0.3 > 0.9 in binary: the witness is before the jump all the same.
+#[test]
+fn witnesses_are_on_their_side_of_a_jump() {
+    let samples = x_over_time(&[(0.0, 0.0), (0.9, 5.0), (0.9, 0.0), (3.0, 0.0)]);
+    let then = always(within(0.3, 0.3).unwrap(), at_least(3.0));
+    let judgement = eventually(within(0.0, 2.0).unwrap(), then).judge(&samples).unwrap();
+    assert_eq!(judgement.robustness, Robustness { lower: 2.0, upper: 2.0 });
+    let witness = judgement.witness.unwrap();
+    assert_eq!((witness.at, witness.margin), (HybridTime { t: 0.9, j: 0 }, 2.0));
+}
+
 #[test]
 fn a_trajectory_that_is_too_short_leaves_an_interval() {
     let samples = x_over_time(&[(0.0, 5.0), (1.0, 2.0)]);
