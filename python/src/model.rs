@@ -91,7 +91,8 @@ impl Automaton {
                 return Err(refused(format!("the transition on {event:?}: {wanted}")));
             }
         };
-        let then = then.map(|then| slf.formulas(then, |coordinate, value| coordinate.becomes(value)));
+        let then =
+            then.map(|then| slf.formulas(then, |coordinate, value| coordinate.becomes(value)));
         let edge = match then.transpose()? {
             Some(assignments) => edge.then(assignments),
             None => edge,
