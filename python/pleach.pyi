@@ -89,7 +89,8 @@ def run(
     """Run the mission of a scenario file.
 
     `settings` replaces values of the file by their keys, such as `{"control.period": 0.5}` or
-    `{"robot[*].rate": 0.05}`. With a seed the robots start at random places. Ctrl-C ends the mission
+    `{"robot[*].rate": 0.05}`: truth values, numbers, texts, lists and mappings. Tuples and arrays of
+    numpy are lists; a text that TOML reads as a value is that value. With a seed the robots start at random places. Ctrl-C ends the mission
     in order, with the outcome `interrupted`.
     """
 

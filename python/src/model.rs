@@ -2,7 +2,7 @@
 //! compositions of them.
 
 use crate::ModelError;
-use crate::entries;
+use crate::data::entries;
 use crate::trajectory::Trajectory;
 use pleach_library::automaton::builder::Builder;
 use pleach_library::automaton::check::Report;
