@@ -9,7 +9,7 @@ use pleach_library::automaton::check::Report;
 use pleach_library::automaton::{
     self as models, Coordinate, Name, Record, Settings, diagram, edge,
 };
-use pleach_library::guards::{Expression, Predicate};
+use pleach_library::guards::{Expression, ParseError, Predicate};
 use pleach_library::page::Drawing;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -158,8 +158,7 @@ impl Automaton {
             let coordinate = self.state.coordinate(&name);
             let coordinate = coordinate
                 .ok_or_else(|| refused(format!("the state has no coordinate called {name:?}")))?;
-            let text = formula.str()?.to_string();
-            let formula: Result<Expression, _> = text.parse();
+            let formula = read_formula(&formula);
             let formula = formula.map_err(|error| refused(format!("{name}: {error}")))?;
             Ok(made(&coordinate, formula))
         };
@@ -229,6 +228,17 @@ fn numbers(mapping: &Bound<'_, PyMapping>) -> PyResult<Vec<(String, f64)>> {
 
 fn read_predicate(text: &str) -> PyResult<Predicate> {
     text.parse().map_err(|error| refused(format!("{text:?}: {error}")))
+}
+
+/// A text is a formula, and a number is a constant.
+fn read_formula(formula: &Bound<'_, PyAny>) -> Result<Expression, String> {
+    if let Ok(text) = formula.extract::<String>() {
+        return text.parse().map_err(|error: ParseError| error.to_string());
+    }
+    let number = formula.extract::<f64>().map_err(|_| {
+        format!("{formula:?} is neither a formula nor a number: write one, as \"-0.8 * v\" or 0.5")
+    });
+    number.map(Expression::from)
 }
 
 /// The settings that are named, the others at their defaults.

@@ -90,6 +90,21 @@ def test_what_a_model_shows():
     assert "<svg" in run.plot() and '"variables"' in run.to_json()
 
 
+def test_formulas_are_text_or_numbers():
+    def stopping(value):
+        return pleach.Automaton("on", {"x": 0.0}).transition(
+            "on", "stop", "off", must="x >= 1", then={"x": value}
+        )
+
+    for number, text in (
+        (0.5, "0.5"), (-2, "-2"), (numpy.float64(1e-7), "1e-7"),
+        (math.inf, "infinity"), (-math.inf, "-infinity"), (math.nan, "NaN"),
+    ):
+        assert stopping(number).diagram() == stopping(text).diagram()
+    with pytest.raises(pleach.ModelError, match="x: None is neither a formula nor a number"):
+        stopping(None)
+
+
 def test_mistakes_are_told():
     with pytest.raises(pleach.ModelError, match="no coordinate called 'w'|no coordinate called \"w\""):
         ball().flow("rising", {"w": 1})
