@@ -2,7 +2,7 @@
 //! compositions of them.
 
 use crate::ModelError;
-use crate::data::entries;
+use crate::data::{self, entries};
 use crate::trajectory::Trajectory;
 use pleach_library::automaton::builder::Builder;
 use pleach_library::automaton::check::Report;
@@ -13,7 +13,8 @@ use pleach_library::guards::{Expression, ParseError, Predicate};
 use pleach_library::page::Drawing;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::PyMapping;
+use pyo3::types::{PyDict, PyMapping};
+use serde_json::Value;
 use std::fmt::Display;
 
 type Model = models::Automaton<Name, Name, Record>;
@@ -128,9 +129,9 @@ impl Automaton {
         &self,
         py: Python<'_>,
         horizon: f64,
-        settings: Option<&Bound<'_, PyAny>>,
+        settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Trajectory> {
-        let (model, settings) = (self.build()?, read_settings(py, settings)?);
+        let (model, settings) = (self.build()?, read_settings(settings)?);
         let run = py.detach(|| model.run_with(settings, horizon)).map_err(refused)?;
         Ok(Trajectory::new(run, vec![Drawing::of(&model)]))
     }
@@ -210,9 +211,9 @@ impl Composition {
         &self,
         py: Python<'_>,
         horizon: f64,
-        settings: Option<&Bound<'_, PyAny>>,
+        settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Trajectory> {
-        let settings = read_settings(py, settings)?;
+        let settings = read_settings(settings)?;
         let run = py.detach(|| self.composition.run_with(settings, horizon)).map_err(refused)?;
         Ok(Trajectory::new(run, self.drawings.clone()))
     }
@@ -242,20 +243,36 @@ fn read_formula(formula: &Bound<'_, PyAny>) -> Result<Expression, String> {
 }
 
 /// The settings that are named, the others at their defaults.
-fn read_settings(py: Python<'_>, given: Option<&Bound<'_, PyAny>>) -> PyResult<Settings> {
-    let Some(given) = given else { return Ok(Settings::default()) };
-    let text: String = py.import("json")?.call_method1("dumps", (given,))?.extract()?;
-    let internal = |error: serde_json::Error| refused(format!("settings: {error}"));
-    let mut settings = serde_json::to_value(Settings::default()).map_err(internal)?;
-    let given: serde_json::Map<String, serde_json::Value> =
-        serde_json::from_str(&text).map_err(internal)?;
-    for (name, value) in given {
-        match settings.get_mut(&name) {
-            Some(setting) => *setting = value,
-            None => return Err(PyKeyError::new_err(format!("no setting is called {name:?}"))),
-        }
+fn read_settings(given: Option<&Bound<'_, PyDict>>) -> PyResult<Settings> {
+    let mut settings = Settings::default();
+    for (name, value) in given.into_iter().flatten() {
+        settings = with_setting(settings, &name.extract::<String>()?, &value)?;
     }
-    serde_json::from_value(settings).map_err(internal)
+    Ok(settings)
+}
+
+/// The settings with `value` for the one called `name`.
+fn with_setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Settings> {
+    let wrong = |error: String| refused(format!("the setting {name}: {error}"));
+    let mut settings = serde_json::to_value(settings).map_err(refused)?;
+    let setting = settings
+        .get_mut(name)
+        .ok_or_else(|| PyKeyError::new_err(format!("no setting is called {name:?}")))?;
+    *setting = match setting {
+        Value::Null => read_unbounded(value),
+        _ => data::read(value),
+    }
+    .map_err(wrong)?;
+    serde_json::from_value(settings).map_err(|error| wrong(error.to_string()))
+}
+
+/// A number that may be ∞, for which null stands, since JSON has no infinity; `None` is the same.
+fn read_unbounded(value: &Bound<'_, PyAny>) -> Result<Value, String> {
+    let infinite = |number: f64| number == f64::INFINITY;
+    if value.is_none() || value.extract().is_ok_and(infinite) {
+        return Ok(Value::Null);
+    }
+    data::read(value).map_err(|error| format!("{error}, or infinity"))
 }
 
 fn refused(error: impl Display) -> PyErr {

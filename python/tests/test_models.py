@@ -105,6 +105,26 @@ def test_formulas_are_text_or_numbers():
         stopping(None)
 
 
+def test_settings_may_be_infinite_where_they_are_by_default():
+    free, unbounded, bounded = (
+        ball().run(1.0, largest_step=step) for step in (None, math.inf, numpy.float64(0.01))
+    )
+    assert free.times.tolist() == unbounded.times.tolist() == ball().run(1.0).times.tolist()
+    assert ball().run(20.0, jump_limit=numpy.int64(3)).jumps[-1]["t"] < 10
+
+    def said(**settings):
+        with pytest.raises(pleach.ModelError) as raised:
+            ball().run(1.0, **settings)
+        return str(raised.value)
+
+    wanted = "is not a finite number: write one, such as 0.5"
+    assert said(resolution=math.inf) == f"the setting resolution: inf {wanted}"
+    assert said(largest_step=math.nan) == f"the setting largest_step: NaN {wanted}, or infinity"
+    assert said(largest_step=-math.inf) == f"the setting largest_step: -inf {wanted}, or infinity"
+    assert said(policy={"Random": {"seed": math.inf}}) == f"the setting policy: inf {wanted}"
+    assert "the setting policy: unknown variant `Never`, expected one of" in said(policy="Never")
+
+
 def test_mistakes_are_told():
     with pytest.raises(pleach.ModelError, match="no coordinate called 'w'|no coordinate called \"w\""):
         ball().flow("rising", {"w": 1})
