@@ -16,12 +16,14 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 use serde_json::Value;
 use std::fmt::Display;
+use std::mem;
 
 type Model = models::Automaton<Name, Name, Record>;
 
 /// A hybrid automaton that is put together part by part.
 #[pyclass(module = "pleach")]
 pub struct Automaton {
+    initial: Name,
     state: Record,
     builder: Builder<Name, Name, Record>,
 }
@@ -35,12 +37,13 @@ impl Automaton {
         state: &Bound<'_, PyMapping>,
         parameters: Option<&Bound<'_, PyMapping>>,
     ) -> PyResult<Self> {
+        let initial = Name::new(initial);
         let state = Record::new(numbers(state)?).map_err(refused)?;
-        let builder = Model::starting_in(Name::new(initial)).initially(state.clone());
+        let builder = Model::starting_in(initial).initially(state.clone());
         let parameters = parameters.map(numbers).transpose()?.unwrap_or_default();
         let builder = (parameters.iter())
             .fold(builder, |builder, (name, value)| builder.parameter(name, *value));
-        Ok(Self { state, builder })
+        Ok(Self { initial, state, builder })
     }
 
     /// Say how coordinates change in a location; others rest.
@@ -142,11 +145,13 @@ impl Automaton {
         self.builder.clone().build().map_err(refused)
     }
 
+    /// Adds a part. It has been read, so that nothing fails while the builder is out of its place.
     fn change(
         &mut self,
         step: impl FnOnce(Builder<Name, Name, Record>) -> Builder<Name, Name, Record>,
     ) {
-        self.builder = step(self.builder.clone());
+        let before = mem::replace(&mut self.builder, Model::starting_in(self.initial));
+        self.builder = step(before);
     }
 
     /// A formula for each coordinate that is named.

@@ -1,6 +1,7 @@
 """Models made from data, held against what can be worked out by hand."""
 
 import math
+import time
 
 import numpy
 import pytest
@@ -123,6 +124,33 @@ def test_settings_may_be_infinite_where_they_are_by_default():
     assert said(largest_step=-math.inf) == f"the setting largest_step: -inf {wanted}, or infinity"
     assert said(policy={"Random": {"seed": math.inf}}) == f"the setting policy: inf {wanted}"
     assert "the setting policy: unknown variant `Never`, expected one of" in said(policy="Never")
+
+
+def test_parts_are_added_as_fast_to_a_large_model_as_to_a_small_one():
+    def seconds_to_grow(model, transitions=200):
+        began = time.perf_counter()
+        for _ in range(transitions):
+            model.transition("on", "go", "on", may="x >= 1", then={"x": "x + 1"})
+        return time.perf_counter() - began
+
+    small = min(seconds_to_grow(pleach.Automaton("on", {"x": 0.0})) for _ in range(5))
+    large = pleach.Automaton("on", {"x": 0.0})
+    seconds_to_grow(large, 4000)
+    assert min(seconds_to_grow(large) for _ in range(5)) < 5 * small
+
+
+def test_a_part_that_is_refused_leaves_the_model_as_it_was():
+    model = ball()
+    before = model.diagram()
+    for refused in (
+        lambda: model.flow("falling", {"w": 1}),
+        lambda: model.invariant("falling", "h <> 0"),
+        lambda: model.transition("falling", "stop", "resting"),
+        lambda: model.transition("falling", "stop", "resting", may="h <= 0", then={"v": "1 +"}),
+    ):
+        with pytest.raises(pleach.ModelError):
+            refused()
+    assert model.diagram() == before
 
 
 def test_mistakes_are_told():
