@@ -161,7 +161,8 @@ class Automaton:
         """Run the automaton by itself for `horizon` seconds.
 
         Settings are `policy` (`"Late"`, `"Early"` or `{"Random": {"seed": 1}}`: when a transition is
-        taken that only may be), `relative_tolerance`, `absolute_tolerance`, `largest_step`,
+        taken that only may be), `method` (`"Automatic"`, `"Explicit"` or `"Implicit"`: how flows are
+        integrated), `relative_tolerance`, `absolute_tolerance`, `largest_step` (infinite by default),
         `resolution`, `round_limit`, `jump_limit`, `step_limit`, `memory_limit` and `accumulation`
         (`"End"` or `"Off"`).
         """
