@@ -89,7 +89,8 @@ def run(
     """Run the mission of a scenario file.
 
     `settings` replaces values of the file by their keys, such as `{"control.period": 0.5}` or
-    `{"robot[*].rate": 0.05}`. With a seed the robots start at random places. Ctrl-C ends the mission
+    `{"robot[*].rate": 0.05}`: truth values, numbers, texts, lists and mappings. Tuples and arrays of
+    numpy are lists; a text that TOML reads as a value is that value. With a seed the robots start at random places. Ctrl-C ends the mission
     in order, with the outcome `interrupted`.
     """
 
@@ -160,7 +161,8 @@ class Automaton:
         """Run the automaton by itself for `horizon` seconds.
 
         Settings are `policy` (`"Late"`, `"Early"` or `{"Random": {"seed": 1}}`: when a transition is
-        taken that only may be), `relative_tolerance`, `absolute_tolerance`, `largest_step`,
+        taken that only may be), `method` (`"Automatic"`, `"Explicit"` or `"Implicit"`: how flows are
+        integrated), `relative_tolerance`, `absolute_tolerance`, `largest_step` (infinite by default),
         `resolution`, `round_limit`, `jump_limit`, `step_limit`, `memory_limit` and `accumulation`
         (`"End"` or `"Off"`).
         """

@@ -1,10 +1,12 @@
 //! The Python module `pleach`: missions and models, their runs as numpy arrays. `pleach.pyi`
 //! describes it for Python.
 
+mod data;
 mod mission;
 mod model;
 mod trajectory;
 
+use data::entries;
 use mission::{Mission, Recorder};
 use model::{Automaton, Composition};
 use pleach_library::automaton::network::scenario::ValidScenario;
@@ -14,7 +16,7 @@ use pleach_library::scenario_file::{self, Setting};
 use pleach_library::{mission as missions, starts};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyMapping, PyTuple};
+use pyo3::types::{PyMapping, PyTuple};
 use std::path::{Path, PathBuf};
 use trajectory::Trajectory;
 
@@ -62,7 +64,8 @@ fn read(
 ) -> PyResult<ValidScenario> {
     let mut set = Vec::new();
     for (key, value) in settings.map(entries).transpose()?.unwrap_or_default() {
-        let value = written(&value)?;
+        let refused = |error: String| ScenarioError::new_err(format!("{key}: {error}"));
+        let value = written(&value).map_err(refused)?;
         let setting: Result<Setting, _> = format!("{key}={value}").parse();
         set.push(setting.map_err(|error| ScenarioError::new_err(error.to_string()))?);
     }
@@ -70,21 +73,14 @@ fn read(
         .map_err(|error| ScenarioError::new_err(error.to_string()))
 }
 
-/// The entries of a mapping in its order.
-fn entries<'py>(mapping: &Bound<'py, PyMapping>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
-    mapping.items()?.iter().map(|entry| entry.extract()).collect()
-}
-
-/// A value as TOML writes it.
-fn written(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    if value.is_instance_of::<PyBool>() {
-        return Ok(value.is_truthy()?.to_string());
+/// A value as a setting writes it: text as it is, everything else in TOML.
+fn written(value: &Bound<'_, PyAny>) -> Result<String, String> {
+    if let Ok(text) = value.extract() {
+        return Ok(text);
     }
-    let text = value.str()?.to_string();
-    Ok(match value.is_instance_of::<PyTuple>() {
-        true => text.replace('(', "[").replace(')', "]"),
-        false => text,
-    })
+    let too_large = |_| format!("a whole number is too large: write at most {}", i64::MAX);
+    let value = toml::Value::try_from(data::read(value)?).map_err(too_large)?;
+    Ok(value.to_string())
 }
 
 fn carry_out(py: Python<'_>, scenario: &ValidScenario, seed: Option<u64>) -> PyResult<Mission> {

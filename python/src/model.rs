@@ -2,25 +2,28 @@
 //! compositions of them.
 
 use crate::ModelError;
-use crate::entries;
+use crate::data::{self, entries};
 use crate::trajectory::Trajectory;
 use pleach_library::automaton::builder::Builder;
 use pleach_library::automaton::check::Report;
 use pleach_library::automaton::{
     self as models, Coordinate, Name, Record, Settings, diagram, edge,
 };
-use pleach_library::guards::{Expression, Predicate};
+use pleach_library::guards::{Expression, ParseError, Predicate};
 use pleach_library::page::Drawing;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::PyMapping;
+use pyo3::types::{PyDict, PyMapping};
+use serde_json::Value;
 use std::fmt::Display;
+use std::mem;
 
 type Model = models::Automaton<Name, Name, Record>;
 
 /// A hybrid automaton that is put together part by part.
 #[pyclass(module = "pleach")]
 pub struct Automaton {
+    initial: Name,
     state: Record,
     builder: Builder<Name, Name, Record>,
 }
@@ -34,12 +37,13 @@ impl Automaton {
         state: &Bound<'_, PyMapping>,
         parameters: Option<&Bound<'_, PyMapping>>,
     ) -> PyResult<Self> {
+        let initial = Name::new(initial);
         let state = Record::new(numbers(state)?).map_err(refused)?;
-        let builder = Model::starting_in(Name::new(initial)).initially(state.clone());
+        let builder = Model::starting_in(initial).initially(state.clone());
         let parameters = parameters.map(numbers).transpose()?.unwrap_or_default();
         let builder = (parameters.iter())
             .fold(builder, |builder, (name, value)| builder.parameter(name, *value));
-        Ok(Self { state, builder })
+        Ok(Self { initial, state, builder })
     }
 
     /// Say how coordinates change in a location; others rest.
@@ -91,7 +95,8 @@ impl Automaton {
                 return Err(refused(format!("the transition on {event:?}: {wanted}")));
             }
         };
-        let then = then.map(|then| slf.formulas(then, |coordinate, value| coordinate.becomes(value)));
+        let then =
+            then.map(|then| slf.formulas(then, |coordinate, value| coordinate.becomes(value)));
         let edge = match then.transpose()? {
             Some(assignments) => edge.then(assignments),
             None => edge,
@@ -127,9 +132,9 @@ impl Automaton {
         &self,
         py: Python<'_>,
         horizon: f64,
-        settings: Option<&Bound<'_, PyAny>>,
+        settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Trajectory> {
-        let (model, settings) = (self.build()?, read_settings(py, settings)?);
+        let (model, settings) = (self.build()?, read_settings(settings)?);
         let run = py.detach(|| model.run_with(settings, horizon)).map_err(refused)?;
         Ok(Trajectory::new(run, vec![Drawing::of(&model)]))
     }
@@ -140,11 +145,13 @@ impl Automaton {
         self.builder.clone().build().map_err(refused)
     }
 
+    /// Adds a part. It has been read, so that nothing fails while the builder is out of its place.
     fn change(
         &mut self,
         step: impl FnOnce(Builder<Name, Name, Record>) -> Builder<Name, Name, Record>,
     ) {
-        self.builder = step(self.builder.clone());
+        let before = mem::replace(&mut self.builder, Model::starting_in(self.initial));
+        self.builder = step(before);
     }
 
     /// A formula for each coordinate that is named.
@@ -157,8 +164,7 @@ impl Automaton {
             let coordinate = self.state.coordinate(&name);
             let coordinate = coordinate
                 .ok_or_else(|| refused(format!("the state has no coordinate called {name:?}")))?;
-            let text = formula.str()?.to_string();
-            let formula: Result<Expression, _> = text.parse();
+            let formula = read_formula(&formula);
             let formula = formula.map_err(|error| refused(format!("{name}: {error}")))?;
             Ok(made(&coordinate, formula))
         };
@@ -210,9 +216,9 @@ impl Composition {
         &self,
         py: Python<'_>,
         horizon: f64,
-        settings: Option<&Bound<'_, PyAny>>,
+        settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Trajectory> {
-        let settings = read_settings(py, settings)?;
+        let settings = read_settings(settings)?;
         let run = py.detach(|| self.composition.run_with(settings, horizon)).map_err(refused)?;
         Ok(Trajectory::new(run, self.drawings.clone()))
     }
@@ -230,21 +236,48 @@ fn read_predicate(text: &str) -> PyResult<Predicate> {
     text.parse().map_err(|error| refused(format!("{text:?}: {error}")))
 }
 
-/// The settings that are named, the others at their defaults.
-fn read_settings(py: Python<'_>, given: Option<&Bound<'_, PyAny>>) -> PyResult<Settings> {
-    let Some(given) = given else { return Ok(Settings::default()) };
-    let text: String = py.import("json")?.call_method1("dumps", (given,))?.extract()?;
-    let internal = |error: serde_json::Error| refused(format!("settings: {error}"));
-    let mut settings = serde_json::to_value(Settings::default()).map_err(internal)?;
-    let given: serde_json::Map<String, serde_json::Value> =
-        serde_json::from_str(&text).map_err(internal)?;
-    for (name, value) in given {
-        match settings.get_mut(&name) {
-            Some(setting) => *setting = value,
-            None => return Err(PyKeyError::new_err(format!("no setting is called {name:?}"))),
-        }
+/// A text is a formula, and a number is a constant.
+fn read_formula(formula: &Bound<'_, PyAny>) -> Result<Expression, String> {
+    if let Ok(text) = formula.extract::<String>() {
+        return text.parse().map_err(|error: ParseError| error.to_string());
     }
-    serde_json::from_value(settings).map_err(internal)
+    let number = formula.extract::<f64>().map_err(|_| {
+        format!("{formula:?} is neither a formula nor a number: write one, as \"-0.8 * v\" or 0.5")
+    });
+    number.map(Expression::from)
+}
+
+/// The settings that are named, the others at their defaults.
+fn read_settings(given: Option<&Bound<'_, PyDict>>) -> PyResult<Settings> {
+    let mut settings = Settings::default();
+    for (name, value) in given.into_iter().flatten() {
+        settings = with_setting(settings, &name.extract::<String>()?, &value)?;
+    }
+    Ok(settings)
+}
+
+/// The settings with `value` for the one called `name`.
+fn with_setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Settings> {
+    let wrong = |error: String| refused(format!("the setting {name}: {error}"));
+    let mut settings = serde_json::to_value(settings).map_err(refused)?;
+    let setting = settings
+        .get_mut(name)
+        .ok_or_else(|| PyKeyError::new_err(format!("no setting is called {name:?}")))?;
+    *setting = match setting {
+        Value::Null => read_unbounded(value),
+        _ => data::read(value),
+    }
+    .map_err(wrong)?;
+    serde_json::from_value(settings).map_err(|error| wrong(error.to_string()))
+}
+
+/// A number that may be ∞, for which null stands, since JSON has no infinity; `None` is the same.
+fn read_unbounded(value: &Bound<'_, PyAny>) -> Result<Value, String> {
+    let infinite = |number: f64| number == f64::INFINITY;
+    if value.is_none() || value.extract().is_ok_and(infinite) {
+        return Ok(Value::Null);
+    }
+    data::read(value).map_err(|error| format!("{error}, or infinity"))
 }
 
 fn refused(error: impl Display) -> PyErr {

@@ -91,7 +91,8 @@ impl Trajectory {
             jump.set_item("label", &record.label)?;
             let moves = record.moves.iter().map(|one| {
                 let component = &self.run.components()[one.component];
-                let [from, to] = [one.source, one.target].map(|at| component.locations[at].as_str());
+                let [from, to] =
+                    [one.source, one.target].map(|at| component.locations[at].as_str());
                 (component.name.as_str(), from, to)
             });
             jump.set_item("moves", moves.collect::<Vec<_>>())?;
@@ -152,7 +153,8 @@ impl Trajectory {
     fn to_json(&self) -> PyResult<String> {
         let mut text = Vec::new();
         let written = self.run.write(&mut text).map_err(|error| error.to_string());
-        let text = written.and_then(|()| String::from_utf8(text).map_err(|error| error.to_string()));
+        let text =
+            written.and_then(|()| String::from_utf8(text).map_err(|error| error.to_string()));
         text.map_err(ModelError::new_err)
     }
 

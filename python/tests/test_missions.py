@@ -1,5 +1,6 @@
 """The wheel, as a user of it would see it."""
 
+import math
 import pathlib
 
 import numpy
@@ -55,6 +56,50 @@ def test_settings_and_seeds(mission):
     )
     assert not numpy.array_equal(one.positions, two.positions)
     assert numpy.array_equal(one.positions, again.positions)
+
+
+def described(settings):
+    """The scenario with these settings, as its mission has it."""
+    return pleach.run(SCENARIOS / "too-few.toml", {"control.max_steps": 1, **settings}).scenario
+
+
+@pytest.mark.parametrize("corners", [
+    [(-1, -1), (3, -1), (3, 3), (-1, 3)],
+    ((-1, -1), [3, -1], (3, 3), [-1, 3]),
+    [[numpy.float64(-1), numpy.int64(-1)], [numpy.float32(3), -1], [3, 3], [-1, 3]],
+    numpy.array([[-1, -1], [3, -1], [3, 3], [-1, 3]], dtype=float),
+], ids=["tuples in a list", "lists in a tuple", "numbers of numpy", "an array of numpy"])
+def test_settings_are_lists_however_python_holds_them(corners):
+    workspace = described({"workspace.boundary": corners})["workspace"]
+    assert workspace["boundary"] == [[-1, -1], [3, -1], [3, 3], [-1, 3]]
+
+
+def test_settings_are_of_every_kind():
+    one = {"position": (0.1, 0.1), "rate": numpy.float64(0.04)}
+    robot, = described({"robot": [one], "task": [{"position": (0.2, 0.2)}]})["robot"]
+    assert robot["position"] == [0.1, 0.1] and robot["rate"] == 0.04
+    assert described({"description": "an 'x' = \"y\""})["description"] == "an 'x' = \"y\""
+    assert described({"control.max_steps": "2"})["control"]["max_steps"] == 2
+    assert described({"control.max_steps": numpy.int64(2)})["control"]["max_steps"] == 2
+
+
+def test_a_setting_of_a_wrong_kind_is_told_with_what_it_is():
+    def said(key, value):
+        with pytest.raises(pleach.ScenarioError) as raised:
+            described({key: value})
+        return str(raised.value)
+
+    assert "boundary[0][1]: the truth value false stands where" in said("workspace.boundary", [(0, False), (1, 1)])
+    assert said("control.period", math.inf) == (
+        "control.period: inf is not a finite number: write one, such as 0.5"
+    )
+    assert "control.period: None is no value" in said("control.period", None)
+    assert "control.period: {1} is no value" in said("control.period", {1})
+    assert "too large: write at most 9223372036854775807" in said("control.max_steps", 2**63)
+    assert "robot: the key 1 is no text" in said("robot", [{1: 2}])
+    endless = []
+    endless.append(endless)
+    assert "does one hold itself?" in said("control.period", endless)
 
 
 def test_mistakes_are_told():

@@ -1,6 +1,7 @@
 """Models made from data, held against what can be worked out by hand."""
 
 import math
+import time
 
 import numpy
 import pytest
@@ -88,6 +89,68 @@ def test_what_a_model_shows():
     page = run.page("A ball")
     assert page.startswith("<!DOCTYPE html>") and "A ball" in page and '"drawing":0' in page
     assert "<svg" in run.plot() and '"variables"' in run.to_json()
+
+
+def test_formulas_are_text_or_numbers():
+    def stopping(value):
+        return pleach.Automaton("on", {"x": 0.0}).transition(
+            "on", "stop", "off", must="x >= 1", then={"x": value}
+        )
+
+    for number, text in (
+        (0.5, "0.5"), (-2, "-2"), (numpy.float64(1e-7), "1e-7"),
+        (math.inf, "infinity"), (-math.inf, "-infinity"), (math.nan, "NaN"),
+    ):
+        assert stopping(number).diagram() == stopping(text).diagram()
+    with pytest.raises(pleach.ModelError, match="x: None is neither a formula nor a number"):
+        stopping(None)
+
+
+def test_settings_may_be_infinite_where_they_are_by_default():
+    free, unbounded, bounded = (
+        ball().run(1.0, largest_step=step) for step in (None, math.inf, numpy.float64(0.01))
+    )
+    assert free.times.tolist() == unbounded.times.tolist() == ball().run(1.0).times.tolist()
+    assert ball().run(20.0, jump_limit=numpy.int64(3)).jumps[-1]["t"] < 10
+
+    def said(**settings):
+        with pytest.raises(pleach.ModelError) as raised:
+            ball().run(1.0, **settings)
+        return str(raised.value)
+
+    wanted = "is not a finite number: write one, such as 0.5"
+    assert said(resolution=math.inf) == f"the setting resolution: inf {wanted}"
+    assert said(largest_step=math.nan) == f"the setting largest_step: NaN {wanted}, or infinity"
+    assert said(largest_step=-math.inf) == f"the setting largest_step: -inf {wanted}, or infinity"
+    assert said(policy={"Random": {"seed": math.inf}}) == f"the setting policy: inf {wanted}"
+    assert "the setting policy: unknown variant `Never`, expected one of" in said(policy="Never")
+
+
+def test_parts_are_added_as_fast_to_a_large_model_as_to_a_small_one():
+    def seconds_to_grow(model, transitions=200):
+        began = time.perf_counter()
+        for _ in range(transitions):
+            model.transition("on", "go", "on", may="x >= 1", then={"x": "x + 1"})
+        return time.perf_counter() - began
+
+    small = min(seconds_to_grow(pleach.Automaton("on", {"x": 0.0})) for _ in range(5))
+    large = pleach.Automaton("on", {"x": 0.0})
+    seconds_to_grow(large, 4000)
+    assert min(seconds_to_grow(large) for _ in range(5)) < 5 * small
+
+
+def test_a_part_that_is_refused_leaves_the_model_as_it_was():
+    model = ball()
+    before = model.diagram()
+    for refused in (
+        lambda: model.flow("falling", {"w": 1}),
+        lambda: model.invariant("falling", "h <> 0"),
+        lambda: model.transition("falling", "stop", "resting"),
+        lambda: model.transition("falling", "stop", "resting", may="h <= 0", then={"v": "1 +"}),
+    ):
+        with pytest.raises(pleach.ModelError):
+            refused()
+    assert model.diagram() == before
 
 
 def test_mistakes_are_told():
