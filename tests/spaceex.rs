@@ -174,8 +174,8 @@ fn what_is_not_supported_is_refused_with_its_line() {
         ),
         (
             changed("x' == v &amp; v' == -g", "v' == -g"),
-            "line 21 of the model: `x` has neither a flow nor bounds: give it a flow, or keep it between \
-             two numbers in the invariants",
+            "line 21 of the model: `x` has neither a flow nor bounds in location `flying`: give it a flow, or keep it between \
+             two numbers in the invariants of every location",
         ),
         (
             changed("v := -c*v", "v := -w*v"),
@@ -328,7 +328,6 @@ fn what_is_not_supported_is_refused_with_its_line() {
     );
 }
 
-/// Locations of one name are told apart by their ids.
 /// Where no initial state satisfies the invariant there are no runs, and nothing would be shown of any.
 #[test]
 fn a_question_about_no_run_is_refused() {
@@ -343,6 +342,83 @@ fn a_question_about_no_run_is_refused() {
     assert!(said.contains("no run begins there"), "{said}");
 }
 
+/// An input is within the bounds of all components, in every location the same.
+#[test]
+fn inputs_have_bounds_in_every_location() {
+    let two_locations = |first: &str, second: &str| {
+        format!(
+            r#"<sspaceex><component id="s"><param name="x" type="real" dynamics="any"/>
+            <param name="u" type="real" dynamics="any"/>
+            <location id="1" name="A"><invariant>{first} &amp; x&lt;=1</invariant><flow>x'==u</flow></location>
+            <location id="2" name="B"><invariant>{second}</invariant><flow>x'==u</flow></location>
+            <transition source="1" target="2"><guard>x&gt;=1</guard></transition></component></sspaceex>"#
+        )
+    };
+    let configuration =
+        "initially = \"x==0 & loc(s)==A\"\nforbidden = \"x>=1.5\"\ntime-horizon = 2";
+    let unit = "0&lt;=u &amp; u&lt;=1";
+    assert_eq!(verdict(&problem([&two_locations(unit, unit), configuration])), Verdict::Violated);
+    let free = refusal(&two_locations(unit, "x&lt;=9"), configuration);
+    assert!(free.contains("nor bounds in location `B`"), "{free}");
+    let other = refusal(&two_locations(unit, "5&lt;=u &amp; u&lt;=6"), configuration);
+    assert!(other.contains("[0, 1] in location `A`, and in [5, 6] in `B`"), "{other}");
+}
+
+/// What turns round a circle leaves it by rounding alone.
+#[test]
+fn errors_of_solutions_violate_nothing() {
+    let turning = r#"<sspaceex><component id="s"><param name="x" type="real" dynamics="any"/>
+        <param name="y" type="real" dynamics="any"/>
+        <location id="1" name="A"><flow>x'==y &amp; y'==-x</flow></location></component></sspaceex>"#;
+    let inside = "initially = \"x==0 & y==1\"\nforbidden = \"x*x+y*y < 1\"\ntime-horizon = 10";
+    assert_eq!(verdict(&problem([turning, inside])), Verdict::Undecided);
+}
+
+/// Runs begin and jump only into invariants, and at no boundary that is excluded: where enclosures show that a part of
+/// what is forbidden is not reached, no run comes there either.
+#[test]
+fn runs_that_are_found_are_runs_of_the_model() {
+    let model = r#"<sspaceex><component id="s"><param name="x" type="real" dynamics="any"/>
+        <param name="z" type="real" dynamics="any"/>
+        <location id="1" name="A"><invariant>x&lt;=1</invariant><flow>x'==1 &amp; z'==0</flow></location>
+        <location id="2" name="B"><invariant>x&lt;=5</invariant><flow>x'==0 &amp; z'==0</flow></location>
+        <transition source="1" target="2"><guard>x&gt;=1</guard><assignment>x:=10</assignment></transition>
+        </component></sspaceex>"#;
+    let verdict = |initially: &str, forbidden: &str| {
+        let states = format!("initially = \"{initially} & 0<=z & loc(s)==A\"");
+        let question = format!("{states}\nforbidden = \"{forbidden}\"\ntime-horizon = 3");
+        verdict(&problem([model, &question]))
+    };
+    // The largest value of this is 1.25, which enclosures do not see.
+    let never = "z - z*z/5 >= 1.2501";
+    for (initially, forbidden) in
+        [("x==0 & z<=5", "x>=8"), ("0<=x & x<=4 & z<=5", "2<=x & x<=4"), ("x==0 & z<5", "z>=5")]
+    {
+        let alone = verdict(initially, forbidden);
+        assert_ne!(alone, Verdict::Violated, "{initially}: {forbidden}");
+        let both = verdict(initially, &format!("{forbidden} | {never}"));
+        assert_eq!(both, Verdict::Undecided, "{initially}: {forbidden}");
+    }
+    assert_eq!(verdict("0<=x & x<=4 & z<=5", &format!("x>=0.9 | {never}")), Verdict::Violated);
+}
+
+#[test]
+fn what_is_too_large_is_refused_and_inputs_are_not_overwritten() {
+    let many = (0..30).map(|bound| format!("(x >= 3 | x >= {bound})")).collect::<Vec<_>>();
+    let configuration = BALL[1].replace("x >= 10.25", &many.join(" & "));
+    let said = refusal(BALL[0], &configuration);
+    assert!(said.contains("more than 4096 alternatives"), "{said}");
+
+    let model = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("not-overwritten.xml");
+    std::fs::write(&model, BALL[0]).expect("it can be written");
+    let model = model.to_str().expect("it is text");
+    let output =
+        pleach(&["reach", model, "--cfg", "tests/spaceex/bouncing-ball.cfg", "--svg", model]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(std::fs::read_to_string(model).expect("it is there"), BALL[0]);
+}
+
+/// Locations of one name are told apart by their ids.
 #[test]
 fn locations_of_one_name_are_told_apart() {
     let model = BALL[0].replace(

@@ -51,6 +51,8 @@ pub struct ReachArguments {
 
 /// Reads a model, encloses its runs, and says what it found.
 pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
+    let inputs = [&arguments.model, &arguments.cfg];
+    output::check_places(inputs, arguments.svg.iter().chain(&arguments.json))?;
     let read = |path: &Path| {
         std::fs::read_to_string(path)
             .map_err(|error| Failure::Usage(format!("{}: cannot be read: {error}", path.display())))

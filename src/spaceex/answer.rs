@@ -66,10 +66,9 @@ impl Problem {
         for initial in &self.initial {
             let begins = |name: &str| initial.locations.iter().any(|location| location == name);
             for automaton in self.automata.iter().filter(|it| begins(it.initial().as_str())) {
-                let starts = std::slice::from_ref(&initial.states);
-                let horizon = self.settings.horizon;
+                let (starts, settings) = (initial.starts(), &self.settings);
                 let found =
-                    falsify(automaton, &self.uncertain, starts, &self.forbidden, horizon, effort);
+                    falsify(automaton, &self.uncertain, starts, &self.forbidden, settings, effort);
                 let Some(found) = found else { continue };
                 if nearest.as_ref().is_none_or(|known| found.margin > known.margin) {
                     nearest = Some(Box::new(found));
@@ -81,14 +80,12 @@ impl Problem {
 
     /// Runs to be drawn into a picture, `count` for each alternative of the initial states.
     pub fn runs(&self, count: usize) -> Vec<Run> {
-        let horizon = self.settings.horizon;
-        let horizon = if horizon.is_finite() { horizon } else { Effort::default().longest };
         let mut drawn = Vec::new();
         for initial in &self.initial {
             let begins = |name: &str| initial.locations.iter().any(|location| location == name);
             for automaton in self.automata.iter().filter(|it| begins(it.initial().as_str())) {
-                let starts = std::slice::from_ref(&initial.states);
-                drawn.extend(runs(automaton, &self.uncertain, starts, horizon, count, 1));
+                let (starts, settings) = (initial.starts(), &self.settings);
+                drawn.extend(runs(automaton, &self.uncertain, starts, settings, count, 1));
             }
         }
         drawn
@@ -150,7 +147,7 @@ impl Solution {
             let ((x, x_rate), (y, y_rate)) = (along(across)?, along(up)?);
             Some(Sample { t: sample.t, values: vec![x, y], rates: vec![x_rate, y_rate] })
         };
-        let phases = runs.iter().flat_map(|run| run.trajectory.intervals());
+        let phases = runs.iter().flat_map(|run| run.trajectory.intervals().take(run.lawful));
         let phases = phases.map(|phase| phase.samples.iter().filter_map(shown).collect());
         let segments: usize = self
             .proofs

@@ -48,6 +48,9 @@ impl Side {
     }
 }
 
+/// How many alternatives a condition may have.
+const MOST_ALTERNATIVES: usize = 4096;
+
 /// A condition as alternatives of clauses that hold together.
 pub(super) fn alternatives(text: &str) -> Result<Vec<Vec<Clause>>, String> {
     let text = stripped(text);
@@ -68,6 +71,12 @@ pub(super) fn alternatives(text: &str) -> Result<Vec<Vec<Clause>>, String> {
     if parts.len() > 1 {
         return parts.into_iter().try_fold(vec![vec![]], |product, part| {
             let factors = alternatives(part)?;
+            if product.len() * factors.len() > MOST_ALTERNATIVES {
+                return Err(format!(
+                    "a condition comes to more than {MOST_ALTERNATIVES} alternatives where its parts with `|` are \
+                     multiplied out: leave out those that others hold"
+                ));
+            }
             let pairs = product.iter().flat_map(|left: &Vec<Clause>| {
                 factors.iter().map(move |right| [&left[..], right].concat())
             });

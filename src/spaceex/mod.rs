@@ -32,7 +32,8 @@ mod write;
 use thiserror::Error;
 
 use crate::automaton::{Automaton, Name, Record};
-use crate::verify::reach::{Forbidden, Settings, StateSet, Uncertain};
+use crate::guards::Predicate;
+use crate::verify::reach::{Forbidden, Settings, Starts, StateSet, Uncertain};
 
 pub use answer::{Solution, Verdict};
 pub use write::{Written, write};
@@ -63,6 +64,15 @@ pub struct Initial {
     pub locations: Vec<String>,
     /// The states, over the coordinates and the parameters that do not vary.
     pub states: StateSet,
+    /// The strict comparisons that hold of them: of these the states hold the boundary, too.
+    pub condition: Predicate,
+}
+
+impl Initial {
+    /// Where runs that are searched for begin.
+    fn starts(&self) -> Starts<'_> {
+        Starts { sets: std::slice::from_ref(&self.states), condition: Some(&self.condition) }
+    }
 }
 
 /// Why a model cannot be read.

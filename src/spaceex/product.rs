@@ -13,7 +13,7 @@ use crate::verify::reach::Uncertain;
 
 use super::configuration::Options;
 use super::document::Component;
-use super::network::{Bound, Network};
+use super::network::Network;
 use super::{Initial, Problem, SpaceExError};
 use clause::fixed;
 
@@ -71,8 +71,8 @@ impl<'a> Product<'a> {
             tuples: Vec::new(),
             names: Vec::new(),
         };
-        product.classify(options)?;
         product.enumerate()?;
+        product.classify(options)?;
         Ok(product)
     }
 
@@ -117,34 +117,41 @@ impl<'a> Product<'a> {
                 };
                 self.constants.push((name.clone(), values));
             } else {
-                match self.input_bounds(name)? {
-                    Some(values) => self.inputs.push((name.clone(), values)),
-                    None => {
-                        return wrong(format!(
-                            "`{name}` has neither a flow nor bounds: give it a flow, or keep it between \
-                             two numbers in the invariants"
-                        ));
-                    }
-                }
+                let values = self.input_bounds(name)?;
+                let values =
+                    values.map_err(|problem| SpaceExError::Model { line: known.line, problem })?;
+                self.inputs.push((name.clone(), values));
             }
         }
         Ok(())
     }
 
-    /// Between which numbers invariants keep an input; over all locations, for there is one input.
-    fn input_bounds(&self, name: &str) -> Result<Option<Interval>> {
-        let mut bounds: Option<Interval> = None;
-        for instance in &self.network.instances {
-            if !instance.names.values().any(|bound| *bound == Bound::Name(name.to_owned())) {
-                continue;
+    /// Between which numbers the invariants keep an input, in every location of the product alike; or else what is wrong.
+    fn input_bounds(&self, name: &str) -> Result<std::result::Result<Interval, String>> {
+        let mut known: Option<(Name, Interval)> = None;
+        for (tuple, location) in self.tuples.iter().zip(&self.names) {
+            let mut clauses = Vec::new();
+            for (instance, place) in self.network.instances.iter().zip(tuple) {
+                clauses.extend(instance.clauses(&instance.component.locations[*place].invariant)?);
             }
-            for place in &instance.component.locations {
-                let clauses = instance.clauses(&place.invariant)?;
-                let Some(within) = fixed(&[clauses], name) else { continue };
-                bounds = Some(bounds.map_or(within, |known| known.hull(within)));
+            let bounds = fixed(&[clauses], name).filter(|bounds| bounds.width().is_finite());
+            let Some(bounds) = bounds else {
+                return Ok(Err(format!(
+                    "`{name}` has neither a flow nor bounds in location `{location}`: give it a flow, or keep it \
+                     between two numbers in the invariants of every location"
+                )));
+            };
+            match &known {
+                Some((other, others)) if *others != bounds => {
+                    return Ok(Err(format!(
+                        "`{name}` is kept in {others} in location `{other}`, and in {bounds} in `{location}`: give \
+                         this input the same bounds in every location"
+                    )));
+                }
+                _ => known = Some((*location, bounds)),
             }
         }
-        Ok(bounds.filter(|bounds| bounds.width().is_finite()))
+        Ok(known.map(|(_, bounds)| bounds).ok_or_else(|| format!("`{name}` is in no location")))
     }
 
     /// The tuples of locations, and their names.
@@ -167,6 +174,20 @@ impl<'a> Product<'a> {
             Name::new(&parts.collect::<Vec<_>>().join(", "))
         };
         self.names = self.tuples.iter().map(name).collect();
+        // Names of components may come to the same one, side by side: their ids do not.
+        let mut sorted = self.names.clone();
+        sorted.sort_unstable();
+        let is_repeated = |name: &Name| {
+            let first = sorted.partition_point(|other| other < name);
+            sorted.get(first + 1) == Some(name)
+        };
+        for (name, tuple) in self.names.iter_mut().zip(&self.tuples) {
+            if is_repeated(name) {
+                let places = tuple.iter().zip(&self.network.instances);
+                let ids = places.map(|(place, it)| it.component.locations[*place].id.as_str());
+                *name = Name::new(&format!("{name} ({})", ids.collect::<Vec<_>>().join(", ")));
+            }
+        }
         Ok(())
     }
 

@@ -2,12 +2,22 @@
 
 use super::clause::{fixed, predicate};
 use super::{Product, Result, location_name};
-use crate::guards::{Expression, Predicate, Substitution, constant};
+use crate::guards::{Expression, Predicate, Relation, Substitution, constant};
 use crate::spaceex::configuration::{Bounded, Options};
 use crate::spaceex::formula::{Clause, Side};
 use crate::spaceex::network::Instance;
 use crate::spaceex::{Initial, SpaceExError};
 use crate::verify::reach::{Directions, Forbidden, Polytope, Region, Settings, StateSet, Template};
+
+/// Whether the states where a predicate holds have a boundary that is not theirs.
+fn has_strict_comparisons(predicate: &Predicate) -> bool {
+    match predicate {
+        Predicate::Comparison(comparison) => {
+            matches!(comparison.relation, Relation::LessThan | Relation::MoreThan)
+        }
+        _ => false,
+    }
+}
 
 impl Product<'_> {
     /// The names of the product's locations that clauses allow.
@@ -95,14 +105,15 @@ impl Product<'_> {
                 })?);
             }
             // Comparisons of several variables cut the box.
-            let mut cuts = Vec::new();
-            for clause in clauses {
-                let predicate = predicate(clause).map_err(wrong)?;
-                cuts.extend(predicate.filter(|one| one.variables().len() > 1));
-            }
+            let predicates = clauses.iter().filter_map(|clause| predicate(clause).transpose());
+            let predicates =
+                predicates.collect::<std::result::Result<Vec<_>, _>>().map_err(wrong)?;
             let values = self.constants.iter().filter(|(_, values)| values.width() == 0.0);
             let values = values.map(|(name, values)| (name, constant(values.midpoint())));
             let values = Substitution::new(values);
+            let strict = predicates.iter().filter(|one| has_strict_comparisons(one)).cloned();
+            let condition = Predicate::all(strict).substitute(&values);
+            let cuts = predicates.into_iter().filter(|one| one.variables().len() > 1);
             let cut = Predicate::all(cuts).substitute(&values);
             let region = Region::of(&cut, &names).map_err(|error| wrong(error.to_string()))?;
             for conjunction in &region.alternatives {
@@ -114,7 +125,8 @@ impl Product<'_> {
                 let polytope = Polytope::around(template, &sides);
                 let states = conjunction.cut(&polytope, &names).and_then(StateSet::from_polytope);
                 let Some(states) = states else { continue };
-                initial.push(Initial { locations: locations.clone(), states });
+                let (locations, condition) = (locations.clone(), condition.clone());
+                initial.push(Initial { locations, states, condition });
             }
         }
         if initial.is_empty() {

@@ -175,7 +175,7 @@ fn simulated(
         return Ok(());
     }
     let Instance { automaton, uncertain, starts, settings, .. } = instance;
-    let drawn = runs(automaton, uncertain, starts, settings.horizon, count, 1);
+    let drawn = runs(automaton, uncertain, &starts[..], settings, count, 1);
     let own = automaton.names().len();
     for run in &drawn {
         let constants = &run.start[own..];
@@ -213,7 +213,7 @@ fn outcome(instance: &Instance, model: &Model, proof: &Proof) -> Outcome {
 fn violation(instance: &Instance) -> Option<Counterexample> {
     let Instance { automaton, starts, uncertain, forbidden, settings, .. } = instance;
     let effort = Effort::default();
-    let found = falsify(automaton, uncertain, starts, forbidden, settings.horizon, &effort)?;
+    let found = falsify(automaton, uncertain, &starts[..], forbidden, settings, &effort)?;
     found.is_violation.then_some(found)
 }
 

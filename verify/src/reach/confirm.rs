@@ -110,7 +110,7 @@ pub fn confirm<L: Location + Sync, E: Event + Sync, S: Coordinates>(
         let is_met = proof.doubts.iter().any(|doubt| doubt.forbidden == number);
         let search = || {
             let states = std::slice::from_ref(&states);
-            falsify(automaton, uncertain, starts, states, settings.horizon, effort)
+            falsify(automaton, uncertain, starts, states, settings, effort)
         };
         let reachability = if is_complete && !is_met {
             Reachability::Unreachable

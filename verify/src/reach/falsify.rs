@@ -4,11 +4,13 @@
 
 use pleach_automaton::{Automaton, Coordinates, HybridTime, Trajectory};
 use pleach_discrete::{Event, Location};
+use pleach_guards::{Predicate, Substitution, constant};
 
 use super::model::Uncertain;
 use super::question::Forbidden;
-use super::search::{Effort, Nearness, Run, Search};
-use super::set::StateSet;
+use super::search::{Effort, Nearness, Run, Search, Starts};
+use super::settings::Settings;
+use crate::temporal::{Formula, Status, eventually, within};
 
 /// The run that comes nearest to forbidden states.
 #[derive(Clone, Debug)]
@@ -53,21 +55,22 @@ impl Nearness for Nearest {
 /// Searches for a run that comes to forbidden states, and returns the nearest found; `None` if no run
 /// could be made.
 ///
-/// Inputs have one value throughout a run, though they may vary.
-pub fn falsify<L: Location + Sync, E: Event + Sync, S: Coordinates>(
+/// Inputs have one value throughout a run, though they may vary. A run that is at a forbidden state only within the error
+/// of its solution is no violation.
+pub fn falsify<'a, L: Location + Sync, E: Event + Sync, S: Coordinates>(
     automaton: &Automaton<L, E, S>,
     uncertain: &[Uncertain],
-    starts: &[StateSet],
+    starts: impl Into<Starts<'a>>,
     forbidden: &[Forbidden],
-    horizon: f64,
+    settings: &Settings,
     effort: &Effort,
 ) -> Option<Counterexample> {
+    let Settings { horizon, enters_invariants, .. } = *settings;
     let horizon = if horizon.is_finite() { horizon } else { effort.longest };
-    let search = Search { automaton, uncertain, starts, horizon };
+    let search = Search { automaton, uncertain, starts: starts.into(), horizon, enters_invariants };
     let (run, nearest) = search.nearest(effort, |run| nearest(run, forbidden))?;
-    let Run { start, parameters, trajectory } = run;
+    let Run { start, parameters, trajectory, .. } = run;
     let Nearest { forbidden, at, state, margin, holds } = nearest;
-    let is_violation = holds;
     Some(Counterexample {
         start,
         parameters,
@@ -75,17 +78,17 @@ pub fn falsify<L: Location + Sync, E: Event + Sync, S: Coordinates>(
         at,
         state,
         margin,
-        is_violation,
+        is_violation: holds,
         trajectory,
     })
 }
 
 /// Where a run comes nearest to forbidden states.
 fn nearest(run: &Run, forbidden: &[Forbidden]) -> Option<Nearest> {
-    let Run { trajectory, parameters, .. } = run;
+    let Run { trajectory, parameters, lawful, .. } = run;
     let names = &trajectory.components().first()?.locations;
     let mut nearest: Option<Nearest> = None;
-    for (j, (location, states)) in (0..).zip(followed(trajectory)) {
+    for (j, (location, states)) in (0..).zip(followed(trajectory)).take(*lawful) {
         let location = names.get(location)?;
         let here = |one: &Forbidden| one.location.as_ref().is_none_or(|name| name == location);
         for (number, one) in forbidden.iter().enumerate().filter(|(_, one)| here(one)) {
@@ -107,7 +110,21 @@ fn nearest(run: &Run, forbidden: &[Forbidden]) -> Option<Nearest> {
             }
         }
     }
+    if let Some(found) = &mut nearest
+        && found.holds
+    {
+        let fixed = parameters.iter().map(|(name, value)| (name.clone(), constant(*value)));
+        let states = forbidden[found.forbidden].states.substitute(&Substitution::new(fixed));
+        found.holds = certainly_holds(states, trajectory, found.at.t);
+    }
     nearest
+}
+
+/// Whether a predicate holds at a time of a run, however large the error of the solution is within its bounds.
+fn certainly_holds(states: Predicate, trajectory: &Trajectory, t: f64) -> bool {
+    let Ok(then) = within(t, t) else { return false };
+    let judged = eventually(then, Formula::holds(states)).judge(trajectory);
+    judged.is_ok_and(|judgement| judgement.status == Status::Satisfied)
 }
 
 /// A time in seconds, and the values of the variables then.

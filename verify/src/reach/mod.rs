@@ -49,7 +49,7 @@ pub use polytope::{Bound, Polytope, Template};
 pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};
 pub use region::{Conjunction, HalfSpace, Region, RegionError};
 pub use rounding::sum_up;
-pub use search::{Effort, Run, runs};
+pub use search::{Effort, Run, Starts, runs};
 pub use set::StateSet;
 pub use settings::{Directions, InvalidSetting, Settings};
 pub use sparse::{Span, SparseFlow};

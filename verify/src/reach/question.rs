@@ -271,7 +271,7 @@ pub fn verify<L: Location + Sync, E: Event + Sync, S: Coordinates>(
     if proof.holds() {
         return Ok(Answer::Holds(proof));
     }
-    let found = falsify(automaton, uncertain, starts, forbidden, settings.horizon, effort);
+    let found = falsify(automaton, uncertain, starts, forbidden, settings, effort);
     Ok(match found {
         Some(found) if found.is_violation => Answer::Violated(Box::new(found)),
         _ => Answer::Undecided(proof),

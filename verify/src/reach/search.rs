@@ -4,12 +4,14 @@
 //! transitions that may be taken; then the nearest one is varied less and less.
 
 use pleach_automaton::composition::Policy;
+use pleach_automaton::trajectory::{FlowInterval, Sample};
 use pleach_automaton::{Automaton, Composition, Coordinates, Trajectory, sweep};
 use pleach_discrete::{Event, Location};
-use pleach_guards::Interval;
+use pleach_guards::{Interval, Predicate, Substitution, constant};
 
 use super::model::Uncertain;
 use super::set::StateSet;
+use super::settings::Settings;
 use crate::draws::Draws;
 
 /// How much is searched.
@@ -36,20 +38,41 @@ pub struct Run {
     pub parameters: Vec<(String, f64)>,
     /// The run.
     pub trajectory: Trajectory,
+    /// How many of its phases count: those before one that begins outside the invariant of its location, where
+    /// runs may not come.
+    pub lawful: usize,
+}
+
+/// Where runs that are searched for begin.
+#[derive(Clone, Copy, Debug)]
+pub struct Starts<'a> {
+    /// In these sets.
+    pub sets: &'a [StateSet],
+    /// And only where this holds of the coordinates and the parameters that rest, as strict comparisons of which the
+    /// sets hold the boundaries.
+    pub condition: Option<&'a Predicate>,
+}
+
+impl<'a> From<&'a [StateSet]> for Starts<'a> {
+    fn from(sets: &'a [StateSet]) -> Self {
+        Starts { sets, condition: None }
+    }
 }
 
 /// Runs that are drawn at random, `count` of them or less where runs cannot be made: from points of
 /// `starts`, as often corners as others, with constant values of inputs and parameters and any policy.
 /// They are the same for the same seed.
-pub fn runs<L: Location + Sync, E: Event + Sync, S: Coordinates>(
+pub fn runs<'a, L: Location + Sync, E: Event + Sync, S: Coordinates>(
     automaton: &Automaton<L, E, S>,
     uncertain: &[Uncertain],
-    starts: &[StateSet],
-    horizon: f64,
+    starts: impl Into<Starts<'a>>,
+    settings: &Settings,
     count: usize,
     seed: u64,
 ) -> Vec<Run> {
-    let search = Search { automaton, uncertain, starts, horizon };
+    let Settings { horizon, enters_invariants, .. } = *settings;
+    let horizon = if horizon.is_finite() { horizon } else { Effort::default().longest };
+    let search = Search { automaton, uncertain, starts: starts.into(), horizon, enters_invariants };
     let mut draws = Draws(seed);
     let cases: Vec<Choices> = (0..count).map(|_| search.drawn(&mut draws)).collect();
     sweep(&cases, |_, _| (), |case| search.run(case)).into_iter().flatten().collect()
@@ -81,8 +104,10 @@ struct Choices {
 pub(super) struct Search<'a, L, E, S> {
     pub automaton: &'a Automaton<L, E, S>,
     pub uncertain: &'a [Uncertain],
-    pub starts: &'a [StateSet],
+    pub starts: Starts<'a>,
     pub horizon: f64,
+    /// Whether runs come only to states in the invariants of their locations.
+    pub enters_invariants: bool,
 }
 
 impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
@@ -120,7 +145,8 @@ impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
 
     /// Any choices, corners as often as points between them.
     fn drawn(&self, draws: &mut Draws) -> Choices {
-        let generators = self.starts.iter().map(|start| start.to_zonotope().generators().len());
+        let generators =
+            self.starts.sets.iter().map(|start| start.to_zonotope().generators().len());
         let length = generators.max().unwrap_or(0) + self.uncertain.len();
         let shares = (0..length).map(|_| match draws.below(2) {
             0 => draws.share().signum(),
@@ -132,7 +158,7 @@ impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
             1 => Policy::Early,
             _ => Policy::Random { seed: draws.next() },
         };
-        Choices { start: draws.below(self.starts.len()), shares, policy }
+        Choices { start: draws.below(self.starts.sets.len()), shares, policy }
     }
 
     /// The run that is chosen.
@@ -147,12 +173,24 @@ impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
         let seed = rest.iter().fold(0u64, |seed, share| seed.rotate_left(7) ^ share.to_bits());
         let (mut further, mut rest) = (Draws(seed), rest.into_iter());
         let mut draw = || rest.next().unwrap_or_else(|| further.share());
-        let start = self.starts.get(choices.start)?.point(&mut draw)?;
+        let start = self.starts.sets.get(choices.start)?.point(&mut draw)?;
         let example = self.automaton.initial_state()?;
         let (coordinates, constants) = start.split_at_checked(example.names().len())?;
         let resting = self.uncertain.iter().filter(|one| !one.varies);
         parameters
             .extend(resting.zip(constants).map(|(one, value)| (one.parameter.clone(), *value)));
+        let resting = parameters.iter().map(|(name, value)| (name.as_str(), *value));
+        let named: Vec<(&str, f64)> = example
+            .names()
+            .iter()
+            .copied()
+            .zip(coordinates.iter().copied())
+            .chain(resting)
+            .collect();
+        let may_begin = |it: &Predicate| it.evaluate(&named[..]).is_ok_and(|verdict| verdict.holds);
+        if !self.starts.condition.is_none_or(may_begin) {
+            return None;
+        }
         let mut automaton = self.automaton.clone();
         for (parameter, value) in &parameters {
             automaton = automaton.with(parameter, *value).ok()?;
@@ -162,7 +200,11 @@ impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
             Composition::builder().add_in("automaton", &automaton, state).build().ok()?;
         let settings = pleach_automaton::Settings { policy: choices.policy, ..Default::default() };
         let trajectory = composition.run_with(settings, self.horizon).ok()?;
-        Some(Run { start, parameters, trajectory })
+        let lawful = match self.enters_invariants {
+            true => phases_inside_invariants(&automaton, &trajectory),
+            false => trajectory.intervals().len(),
+        };
+        (lawful > 0).then_some(Run { start, parameters, trajectory, lawful })
     }
 }
 
@@ -172,6 +214,33 @@ impl Choices {
         let vary = |share: &f64| (share + reach * draws.share()).clamp(-1.0, 1.0);
         Choices { shares: self.shares.iter().map(vary).collect(), ..self.clone() }
     }
+}
+
+/// How many phases a run has before one that is outside the invariant of its location. No time passes in such a phase:
+/// where some does, rounding alone puts its beginning outside.
+fn phases_inside_invariants<L: Location, E: Event, S: Coordinates>(
+    automaton: &Automaton<L, E, S>,
+    trajectory: &Trajectory,
+) -> usize {
+    let Some(participant) = trajectory.components().first() else { return 0 };
+    let invariant = |location: usize| {
+        let name = participant.locations.get(location)?;
+        let location = automaton.locations().iter().find(|location| location.name() == name)?;
+        automaton.mode(*location)?.invariant.as_ref()
+    };
+    let numbers = automaton.parameters().map(|(name, value)| (name, constant(value)));
+    let numbers = Substitution::new(numbers);
+    let is_inside = |phase: &FlowInterval| {
+        let [first, last] = [phase.samples.first(), phase.samples.last()];
+        let passes_time = first.zip(last).is_some_and(|(first, last)| first.t < last.t);
+        let invariant = phase.locations.first().and_then(|location| invariant(*location));
+        let holds = |(invariant, state): (&Predicate, &Sample)| {
+            let verdict = invariant.substitute(&numbers).evaluate(&trajectory.state(state));
+            verdict.is_ok_and(|verdict| verdict.holds)
+        };
+        passes_time || invariant.zip(first).is_none_or(holds)
+    };
+    trajectory.intervals().take_while(is_inside).count()
 }
 
 /// The number at a share from −1 to 1 of the way.

@@ -16,7 +16,7 @@ use super::model::{Model, Uncertain};
 use super::polytope::Polytope;
 use super::question::ReachError;
 use super::region::{self, RegionError};
-use super::search::{Effort, Nearness, Run, Search};
+use super::search::{Effort, Nearness, Run, Search, Starts};
 use super::set::StateSet;
 use super::settings::Settings;
 use super::signal::{Grid, Signal};
@@ -162,11 +162,14 @@ pub fn verify_formula<L: Location + Sync, E: Event + Sync, S: Coordinates>(
     if proof.robustness.lower > 0.0 {
         return Ok(TemporalAnswer::Holds(proof));
     }
-    let search = Search { automaton, uncertain, starts, horizon: formula.horizon() };
-    let judged = |run: &Run| formula.judge(&run.trajectory).ok();
+    let enters_invariants = settings.enters_invariants;
+    let (starts, horizon) = (Starts::from(starts), formula.horizon());
+    let search = Search { automaton, uncertain, starts, horizon, enters_invariants };
+    let is_lawful = |run: &Run| run.lawful == run.trajectory.intervals().len();
+    let judged = |run: &Run| is_lawful(run).then(|| formula.judge(&run.trajectory).ok()).flatten();
     Ok(match search.nearest(effort, judged) {
         Some((run, judgement)) if judgement.is_there() => {
-            let Run { start, parameters, trajectory } = run;
+            let Run { start, parameters, trajectory, .. } = run;
             let violation = Violation { start, parameters, judgement, trajectory };
             TemporalAnswer::Violated(Box::new(violation))
         }
