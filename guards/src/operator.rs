@@ -78,8 +78,21 @@ impl BinaryOperator {
             {
                 f64::NAN
             }
-            BinaryOperator::Minimum => left.min(right),
-            BinaryOperator::Maximum => left.max(right),
+            // Of equal ones the left one: zeros have signs.
+            BinaryOperator::Minimum => {
+                if right < left {
+                    right
+                } else {
+                    left
+                }
+            }
+            BinaryOperator::Maximum => {
+                if right > left {
+                    right
+                } else {
+                    left
+                }
+            }
             BinaryOperator::Angle => left.atan2(right),
         }
     }

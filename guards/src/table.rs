@@ -44,8 +44,8 @@ impl Table {
     ///
     /// # Errors
     ///
-    /// [`InvalidTable`] unless there is a point, all numbers are finite, and each place is larger
-    /// than the one before.
+    /// [`InvalidTable`] unless there is a point, all numbers and their differences are finite, and each
+    /// place is larger than the one before.
     pub fn linear(points: impl Into<Vec<(f64, f64)>>) -> Result<Table, InvalidTable> {
         Table::new(Interpolation::Linear, points)
     }
@@ -76,8 +76,15 @@ impl Table {
             if !(place.is_finite() && value.is_finite()) {
                 return Err(InvalidTable::NotFinite { index, place, value });
             }
-            if index > 0 && points[index - 1].0 >= place {
-                return Err(InvalidTable::Order { index, before: points[index - 1].0, place });
+            let Some(&(before, value_before)) = index.checked_sub(1).map(|last| &points[last])
+            else {
+                continue;
+            };
+            if before >= place {
+                return Err(InvalidTable::Order { index, before, place });
+            }
+            if !((place - before).is_finite() && (value - value_before).is_finite()) {
+                return Err(InvalidTable::TooFarApart { index });
             }
         }
         Ok(Table { interpolation, points: points.into() })
@@ -232,6 +239,11 @@ pub enum InvalidTable {
         /// Its value.
         value: f64,
     },
+    /// A place or a value differs from the one before by more than any number.
+    TooFarApart {
+        /// The index of the point, from 0.
+        index: usize,
+    },
     /// A place is not larger than the one before.
     Order {
         /// The index of the point, from 0.
@@ -250,6 +262,10 @@ impl fmt::Display for InvalidTable {
             Self::NotFinite { index, place, value } => {
                 write!(formatter, "point {index} of a table, ({place}, {value}), is not finite")
             }
+            Self::TooFarApart { index } => write!(
+                formatter,
+                "point {index} of a table is too far from the one before: their differences overflow"
+            ),
             Self::Order { index, before, place } => write!(
                 formatter,
                 "point {index} of a table is at {place}, which is not after {before}: \

@@ -146,6 +146,9 @@ fn tables_say_what_is_wrong_with_their_points() {
     let twice = Table::linear([(0.0, 1.0), (0.0, 2.0)]).expect_err("one place twice");
     assert!(twice.to_string().contains("point 1 of a table is at 0, which is not after 0"));
     assert!(Table::steps([(f64::NAN, 1.0)]).is_err());
+    for apart in [[(-1.7e308, 0.0), (1.7e308, 1.0)], [(0.0, -1.7e308), (1.0, 1.7e308)]] {
+        assert_eq!(Table::linear(apart), Err(InvalidTable::TooFarApart { index: 1 }));
+    }
     let table = Table::linear([(0.0, 1.0), (2.0, 3.0)]).expect("ascending").at(variable("x"));
     for (place, value) in [(-1.0, 1.0), (0.0, 1.0), (1.0, 2.0), (2.0, 3.0), (9.0, 3.0)] {
         assert_eq!(at(&table, place), value);

@@ -137,6 +137,16 @@ fn no_minimum_and_no_power_hides_what_is_not_a_number() {
 }
 
 #[test]
+fn of_two_zeros_the_left_one_is_taken() {
+    let [x, y] = [variable("x"), variable("y")];
+    for extremum in [x.min(&y), x.max(&y)] {
+        let program = extremum.compile(&["x", "y"]).expect("both are listed");
+        assert!(program.evaluate(&[0.0, -0.0]).is_sign_positive(), "{extremum}");
+        assert!(program.evaluate(&[-0.0, 0.0]).is_sign_negative(), "{extremum}");
+    }
+}
+
+#[test]
 fn variables_that_are_missing_are_named() {
     let unknown = |variable: &str| EvaluationError::UnknownVariable { variable: variable.into() };
     let guard = (variable("x") + variable("w")).at_most(1.0);
