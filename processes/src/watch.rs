@@ -22,6 +22,7 @@ use pleach::cli::run::{told, warn_of};
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use pleach::mission::{Completed, Gallery};
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -95,10 +96,10 @@ pub fn show(
     }
     let interrupt = Interrupt::listen()?;
     let mut progress = Progress::new(&planned.scenario, arguments.quiet);
-    let mut observatory = Observatory::new(&planned.scenario, transport, wait);
+    let mut observatory = Observatory::new(&planned.scenario, wait);
     let finished = job::watch(planned, &outputs, &mut progress, &interrupt, |watchers| {
         let gallery = Gallery::with_faults(&planned.scenario, planned.faults, watchers);
-        observatory.watch(gallery, &interrupt, meanwhile)
+        observatory.watch(transport, gallery, &interrupt, meanwhile)
     })?;
     let text = told(&finished, arguments.trace.as_deref());
     output::say(&(text + &observatory.counts()))?;
@@ -108,7 +109,6 @@ pub fn show(
 /// What is known from reports.
 struct Observatory<'a> {
     scenario: &'a ValidScenario,
-    transport: &'a Transport,
     wait: Duration,
     /// The control period that is shown next.
     step: usize,
@@ -122,7 +122,8 @@ struct Observatory<'a> {
     bodies: BTreeMap<NodeId, Point>,
     /// The processes that Zenoh sees.
     alive: BTreeSet<NodeId>,
-    tallies: BTreeMap<NodeId, Tally>,
+    /// What each process has counted, with the control period of its newest report.
+    tallies: BTreeMap<NodeId, (usize, Tally)>,
     refusals: Refusals,
     missed: u64,
     /// Whether the user has reported that the mission is over: then processes end.
@@ -130,7 +131,7 @@ struct Observatory<'a> {
 }
 
 impl<'a> Observatory<'a> {
-    fn new(scenario: &'a ValidScenario, transport: &'a Transport, wait: Duration) -> Self {
+    fn new(scenario: &'a ValidScenario, wait: Duration) -> Self {
         let site = scenario.site();
         let fresh = |(id, start): (usize, &pleach::automaton::network::scenario::RobotStart)| {
             let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(site));
@@ -138,7 +139,6 @@ impl<'a> Observatory<'a> {
         };
         Observatory {
             scenario,
-            transport,
             wait,
             step: 0,
             robots: scenario.robot.iter().enumerate().map(fresh).collect(),
@@ -155,13 +155,14 @@ impl<'a> Observatory<'a> {
 
     fn watch(
         &mut self,
+        transport: &Transport,
         mut gallery: Gallery<'_, '_>,
         interrupt: &Interrupt,
         meanwhile: &mut Meanwhile<'_>,
     ) -> Result<Completed, Failure> {
         let mut last_news = Instant::now();
         let end = loop {
-            if let Some(arrival) = self.transport.next_within(GLANCE) {
+            if let Some(arrival) = transport.next_within(GLANCE) {
                 last_news = Instant::now();
                 self.take(arrival)?;
             }
@@ -184,7 +185,7 @@ impl<'a> Observatory<'a> {
                 break self.broken_off(format!("nobody has reported for {seconds} s"));
             }
         };
-        self.transport.count_overflow(&mut self.refusals);
+        transport.count_overflow(&mut self.refusals);
         Ok(gallery.conclude(end)?)
     }
 
@@ -226,19 +227,27 @@ impl<'a> Observatory<'a> {
         if (from < self.robots.len()) != report.robot.is_some() {
             return Err(Refusal::Malformed);
         }
-        self.tallies.insert(from, report.tally);
-        self.has_ended |= report.end.is_some();
-        if report.step < self.step {
-            self.missed += 1;
-            return Ok(());
+        let (step, tally, ends) = (report.step, report.tally, report.end.is_some());
+        match step.checked_sub(self.step) {
+            None => self.missed += 1,
+            Some(ahead) if ahead > MOST_AHEAD => return Err(Refusal::TooFarAhead),
+            Some(_) => match self.reports.entry(step).or_default().entry(from) {
+                Entry::Occupied(_) => return Err(Refusal::Repeated),
+                Entry::Vacant(place) => {
+                    place.insert(report);
+                }
+            },
         }
-        if report.step > self.step + MOST_AHEAD {
-            return Err(Refusal::TooFarAhead);
-        }
-        let of_step = self.reports.entry(report.step).or_default();
-        match of_step.insert(from, report) {
-            None => Ok(()),
-            Some(_) => Err(Refusal::Repeated),
+        self.note_tally(from, step, tally);
+        self.has_ended |= ends;
+        Ok(())
+    }
+
+    /// A process has counted what its newest report says.
+    fn note_tally(&mut self, from: NodeId, step: usize, tally: Tally) {
+        let newest = self.tallies.entry(from).or_insert((step, tally));
+        if newest.0 < step {
+            *newest = (step, tally);
         }
     }
 
@@ -323,7 +332,8 @@ impl<'a> Observatory<'a> {
 
     /// What the processes have counted, as lines of the summary.
     fn counts(&self) -> String {
-        let sum = |count: fn(&Tally) -> u64| self.tallies.values().map(count).sum::<u64>();
+        let sum =
+            |count: fn(&Tally) -> u64| self.tallies.values().map(|(_, it)| count(it)).sum::<u64>();
         let (refused, late) = (sum(|it| it.refused), sum(|it| it.late));
         let (lost, given_up) = (sum(|it| it.lost), sum(|it| it.given_up));
         let observer = if self.refusals.total() > 0 || self.missed > 0 {
@@ -340,10 +350,10 @@ impl<'a> Observatory<'a> {
 
     /// How much each robot has sent in a control period, as a line of the summary.
     fn weight(&self) -> String {
-        let robots = || self.tallies.range(..self.robots.len()).map(|(_, tally)| tally);
+        let robots = || self.tallies.range(..self.robots.len()).map(|(_, (_, tally))| tally);
         let shares = (robots().count() * self.step).max(1) as f64;
         let each = |count: fn(&Tally) -> u64| robots().map(count).sum::<u64>() as f64 / shares;
-        let unknown: u64 = self.tallies.values().map(|tally| tally.unknown).sum();
+        let unknown: u64 = self.tallies.values().map(|(_, tally)| tally.unknown).sum();
         format!(
             "  each robot sends    {:.1} messages in {:.1} packets of {:.0} bytes a control period; {unknown} \
              digests unknown\n",
@@ -351,5 +361,57 @@ impl<'a> Observatory<'a> {
             each(|tally| tally.packets),
             each(|tally| tally.bytes) / each(|tally| tally.packets).max(1.0),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pleach::scenario_file;
+
+    fn scenario() -> ValidScenario {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/too-few.toml");
+        scenario_file::read(&path).unwrap()
+    }
+
+    fn observatory(scenario: &ValidScenario) -> Observatory<'_> {
+        Observatory::new(scenario, Duration::from_millis(200))
+    }
+
+    /// The first report of node `from`, as if it were of control period `step`.
+    fn report(observatory: &Observatory<'_>, from: NodeId, step: usize) -> Report {
+        let robot = observatory.robots.get(from).cloned();
+        Report { step, robot, events: Vec::new(), end: None, tally: Tally::default() }
+    }
+
+    #[test]
+    fn of_two_reports_on_one_control_period_the_first_holds() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let first = report(&observatory, 2, 0);
+        let end = Some(End::new(Outcome::Serviced, "it says so".into(), None).into());
+        let tally = Tally { late: 9, ..Tally::default() };
+        let second = Report { end, tally, ..first.clone() };
+        assert_eq!(observatory.enter(2, first.clone()), Ok(()));
+        assert_eq!(observatory.enter(2, second.clone()), Err(Refusal::Repeated));
+        assert_eq!(observatory.reports[&0][&2], first);
+        assert_eq!(observatory.tallies[&2], (0, first.tally));
+        assert!(!observatory.has_ended);
+        let too_far = Report { step: MOST_AHEAD + 1, ..second };
+        assert_eq!(observatory.enter(2, too_far), Err(Refusal::TooFarAhead));
+        assert_eq!(observatory.tallies[&2], (0, first.tally));
+        assert!(!observatory.has_ended);
+    }
+
+    #[test]
+    fn what_a_process_has_counted_is_in_its_newest_report() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let late = |late| Tally { late, ..Tally::default() };
+        for (step, count) in [(1, 5), (0, 3), (2, 7)] {
+            let report = Report { tally: late(count), ..report(&observatory, 2, step) };
+            assert_eq!(observatory.enter(2, report), Ok(()));
+            assert_eq!(observatory.tallies[&2].1, late(count.max(5)));
+        }
     }
 }
