@@ -8,6 +8,7 @@ use crate::memory::Memory;
 use crate::packet::{LONGEST_PACKET, Packet, Refusals, Stamp};
 use crate::receiver::Receiver;
 use crate::report::{Report, Tally};
+use crate::strangers::Strangers;
 use crate::transport::{Arrival, Endpoints, Hello, Interest, Sender, Transport, digest};
 use pleach::automaton::network::record::MissionEvent;
 use pleach::automaton::network::scenario::ValidScenario;
@@ -145,8 +146,7 @@ struct Process<'a> {
     hears_all: bool,
     is_running: bool,
     last_hello: Option<Instant>,
-    /// Nodes with other scenarios that have been told of.
-    strangers: BTreeSet<NodeId>,
+    strangers: Strangers<'a>,
     events: Vec<Vec<(u32, u32, MissionEvent)>>,
     interrupt: Interrupt,
 }
@@ -189,7 +189,7 @@ impl<'a> Process<'a> {
             hears_all: false,
             is_running: false,
             last_hello: None,
-            strangers: BTreeSet::new(),
+            strangers: Strangers::to(scenario, &parts.digest),
             events: vec![Vec::new(); ids.len()],
             interrupt: Interrupt::listen()?,
             ids,
@@ -292,17 +292,16 @@ impl<'a> Process<'a> {
 
     fn nobody_is_heard(&self) -> String {
         let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
-        let Some(name) = self.strangers.first().map(|_| &self.scenario.name) else {
-            return format!(
+        match (self.strangers.count(), &self.scenario.name) {
+            (0, _) => format!(
                 "{own} has heard no other node within {seconds} s: are they started, with the same \
                  --session, and does --connect name an endpoint at which one listens?"
-            );
-        };
-        let others = self.strangers.len();
-        format!(
-            "{own} has heard no other node with the scenario {name:?} within {seconds} s, and {others} \
-             with another one"
-        )
+            ),
+            (others, name) => format!(
+                "{own} has heard no other node with the scenario {name:?} within {seconds} s, and \
+                 {others} with another one"
+            ),
+        }
     }
 
     fn say_hello(&mut self) {
@@ -348,15 +347,8 @@ impl<'a> Process<'a> {
     }
 
     fn take_hello(&mut self, from: NodeId, hello: Hello) -> Result<(), Failure> {
-        if hello.digest != self.parts.digest {
-            if self.strangers.insert(from) {
-                let Hello { name, scenario, digest, .. } = hello;
-                let other = format!("{name:?} of this session has the scenario {scenario:?}");
-                let own = format!("{:?} ({})", self.scenario.name, self.parts.digest);
-                let rule = "all processes start with the same file";
-                tell(format_args!("warning: {other} ({digest}) and not {own}; {rule}"));
-            }
-        } else if self.ids.contains(&from) && hello.started != self.started {
+        let is_stranger = self.strangers.recognise(from, &hello);
+        if !is_stranger && self.ids.contains(&from) && hello.started != self.started {
             // Of two processes that wait, the one that was started later gives way.
             if !self.is_running && (hello.is_running || hello.started < self.started) {
                 return Err(self.runs_already(from));

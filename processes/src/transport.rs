@@ -56,6 +56,15 @@ pub struct Hello {
     pub is_running: bool,
 }
 
+#[cfg(test)]
+impl Hello {
+    /// The hello of a process that waits for others and has heard nobody.
+    pub fn of(name: &str, scenario: &str, digest: &str) -> Self {
+        let [name, scenario, digest] = [name, scenario, digest].map(str::to_owned);
+        Hello { name, scenario, digest, started: 1, hears_all: false, is_running: false }
+    }
+}
+
 /// What arrives.
 #[derive(Clone, Debug)]
 pub enum Arrival {

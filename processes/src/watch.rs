@@ -7,6 +7,7 @@ use crate::arguments::{MEETING_POINT, OutputArguments, WatchArguments};
 use crate::packet::{Refusal, Refusals};
 use crate::process::{digest_of, name_of, scenario_in};
 use crate::report::{Report, Tally};
+use crate::strangers::Strangers;
 use crate::transport::{Arrival, Endpoints, Interest, Transport};
 use pleach::automaton::network::Robot;
 use pleach::automaton::network::observer::{RobotReport, complete_events};
@@ -96,7 +97,8 @@ pub fn show(
     }
     let interrupt = Interrupt::listen()?;
     let mut progress = Progress::new(&planned.scenario, arguments.quiet);
-    let mut observatory = Observatory::new(&planned.scenario, wait);
+    let digest = digest_of(&planned.scenario)?;
+    let mut observatory = Observatory::new(&planned.scenario, &digest, wait);
     let finished = job::watch(planned, &outputs, &mut progress, &interrupt, |watchers| {
         let gallery = Gallery::with_faults(&planned.scenario, planned.faults, watchers);
         observatory.watch(transport, gallery, &interrupt, meanwhile)
@@ -122,6 +124,7 @@ struct Observatory<'a> {
     bodies: BTreeMap<NodeId, Point>,
     /// The processes that Zenoh sees.
     alive: BTreeSet<NodeId>,
+    strangers: Strangers<'a>,
     /// What each process has counted, with the control period of its newest report.
     tallies: BTreeMap<NodeId, (usize, Tally)>,
     refusals: Refusals,
@@ -131,7 +134,7 @@ struct Observatory<'a> {
 }
 
 impl<'a> Observatory<'a> {
-    fn new(scenario: &'a ValidScenario, wait: Duration) -> Self {
+    fn new(scenario: &'a ValidScenario, digest: &str, wait: Duration) -> Self {
         let site = scenario.site();
         let fresh = |(id, start): (usize, &pleach::automaton::network::scenario::RobotStart)| {
             let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(site));
@@ -146,6 +149,7 @@ impl<'a> Observatory<'a> {
             present: (0..scenario.robot.len() + scenario.access_point.len() + 1).collect(),
             bodies: BTreeMap::new(),
             alive: BTreeSet::new(),
+            strangers: Strangers::to(scenario, digest),
             tallies: BTreeMap::new(),
             refusals: Refusals::default(),
             missed: 0,
@@ -162,9 +166,10 @@ impl<'a> Observatory<'a> {
     ) -> Result<Completed, Failure> {
         let mut last_news = Instant::now();
         let end = loop {
-            if let Some(arrival) = transport.next_within(GLANCE) {
+            if let Some(arrival) = transport.next_within(GLANCE)
+                && self.take(arrival)?
+            {
                 last_news = Instant::now();
-                self.take(arrival)?;
             }
             self.bodies.extend(meanwhile(self.step)?);
             if let Some(end) = self.show_what_is_complete(&mut gallery) {
@@ -174,19 +179,29 @@ impl<'a> Observatory<'a> {
                 break self.broken_off(format!("watching was ended by {signal}"));
             }
             if last_news.elapsed() > self.wait {
-                let seconds = self.wait.as_secs_f64();
                 if self.step == 0 {
-                    let session = "are the processes started, with the same scenario and --session, \
-                                   and does --connect name an endpoint at which one listens?";
-                    return Err(Failure::Usage(format!(
-                        "nobody reports for {seconds} s: {session}"
-                    )));
+                    return Err(Failure::Usage(self.nobody_reports()));
                 }
+                let seconds = self.wait.as_secs_f64();
                 break self.broken_off(format!("nobody has reported for {seconds} s"));
             }
         };
         transport.count_overflow(&mut self.refusals);
         Ok(gallery.conclude(end)?)
+    }
+
+    fn nobody_reports(&self) -> String {
+        let seconds = self.wait.as_secs_f64();
+        match (self.strangers.count(), &self.scenario.name) {
+            (0, _) => format!(
+                "nobody reports for {seconds} s: are the processes started, with the same scenario and \
+                 --session, and does --connect name an endpoint at which one listens?"
+            ),
+            (others, name) => format!(
+                "nobody with the scenario {name:?} reports for {seconds} s; nodes of this session with \
+                 another one: {others}"
+            ),
+        }
     }
 
     fn broken_off(&self, what: String) -> End {
@@ -196,31 +211,39 @@ impl<'a> Observatory<'a> {
 
     // ---- What arrives ------------------------------------------------------------------------
 
-    fn take(&mut self, arrival: Arrival) -> Result<(), Failure> {
+    /// Takes in what has arrived, and says whether it is news of the mission: a report, or that a process
+    /// waits for the mission to begin.
+    fn take(&mut self, arrival: Arrival) -> Result<bool, Failure> {
         let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
         let taken = match arrival {
-            Arrival::Report(from, _) | Arrival::Alive(from, _) if from >= count => {
+            Arrival::Report(from, _) | Arrival::Alive(from, _) | Arrival::Hello(from, _)
+                if from >= count =>
+            {
                 Err(Refusal::NoSuchNode)
             }
-            Arrival::Report(from, bytes) => {
-                Report::decode(&bytes, self.scenario).and_then(|report| self.enter(from, report))
-            }
+            Arrival::Report(from, bytes) => Report::decode(&bytes, self.scenario)
+                .and_then(|report| self.enter(from, report))
+                .map(|()| true),
             Arrival::Alive(node, is_there) => {
                 self.note_life(node, is_there);
-                Ok(())
+                Ok(false)
+            }
+            Arrival::Hello(from, hello) => {
+                let is_stranger = self.strangers.recognise(from, &hello);
+                Ok(!is_stranger && !hello.is_running && self.step == 0)
             }
             Arrival::Refused(refusal) => Err(refusal),
-            Arrival::Hello(..) | Arrival::Packet(..) => Ok(()),
+            Arrival::Packet(..) => Ok(false),
         };
-        if let Err(refusal) = taken {
-            self.refusals.count(refusal);
-        }
-        if self.step == 0 && self.is_late() {
+        if self.step == 0 && self.is_late(&taken) {
             return Err(Failure::Usage(
                 "the mission goes on already: start `pleach watch` before its last process".into(),
             ));
         }
-        Ok(())
+        Ok(taken.unwrap_or_else(|refusal| {
+            self.refusals.count(refusal);
+            false
+        }))
     }
 
     fn enter(&mut self, from: NodeId, report: Report) -> Result<(), Refusal> {
@@ -263,17 +286,21 @@ impl<'a> Observatory<'a> {
 
     // ---- What is shown -----------------------------------------------------------------------
 
-    /// Whether this observer has missed the beginning.
-    fn is_late(&self) -> bool {
-        let is_first = |step: usize| self.reports.contains_key(&step);
-        !is_first(0) && (PERIODS_APART..=MOST_AHEAD).any(is_first)
+    /// Whether this observer has missed the beginning, as it sees from what it has taken in last and
+    /// before.
+    fn is_late(&self, taken: &Result<bool, Refusal>) -> bool {
+        let is_far_on = *taken == Err(Refusal::TooFarAhead);
+        !self.reports.contains_key(&0) && (is_far_on || self.has_later_reports())
+    }
+
+    /// Whether a report has come from so late a period that of the one shown next no more is expected.
+    fn has_later_reports(&self) -> bool {
+        self.reports.range(self.step + PERIODS_APART..).next().is_some()
     }
 
     /// Whether all reports of a control period have come that will.
     fn is_complete(&self, reports: &BTreeMap<NodeId, Report>) -> bool {
-        let later = self.step + PERIODS_APART;
-        self.present.iter().all(|node| reports.contains_key(node))
-            || self.reports.range(later..).next().is_some()
+        self.present.iter().all(|node| reports.contains_key(node)) || self.has_later_reports()
     }
 
     /// Shows what is complete, and says how the mission ends if it does.
@@ -367,6 +394,7 @@ impl<'a> Observatory<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::Hello;
     use pleach::scenario_file;
 
     fn scenario() -> ValidScenario {
@@ -375,7 +403,7 @@ mod tests {
     }
 
     fn observatory(scenario: &ValidScenario) -> Observatory<'_> {
-        Observatory::new(scenario, Duration::from_millis(200))
+        Observatory::new(scenario, "abc", Duration::from_millis(200))
     }
 
     /// The first report of node `from`, as if it were of control period `step`.
@@ -412,6 +440,37 @@ mod tests {
             let report = Report { tally: late(count), ..report(&observatory, 2, step) };
             assert_eq!(observatory.enter(2, report), Ok(()));
             assert_eq!(observatory.tallies[&2].1, late(count.max(5)));
+        }
+    }
+
+    #[test]
+    fn only_processes_of_the_same_scenario_are_news_until_the_mission_begins() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let waiting = Hello::of("robot 2", "too-few", "abc");
+        let running = Hello { is_running: true, ..waiting.clone() };
+        let stranger = Hello::of("robot 2", "study-1", "abd");
+        let mut is_news =
+            |node, hello: &Hello| observatory.take(Arrival::Hello(node, hello.clone())).unwrap();
+        assert!(is_news(2, &waiting));
+        assert!(!is_news(2, &running), "who runs reports, or is not heard of");
+        assert!(!is_news(99, &waiting), "there is no such node");
+        assert!(!is_news(2, &stranger));
+        assert_eq!(observatory.strangers.count(), 1);
+        let said = observatory.nobody_reports();
+        assert!(said.contains("nobody with the scenario \"too-few\" reports"), "{said}");
+        observatory.step = 1;
+        assert!(!observatory.take(Arrival::Hello(2, waiting)).unwrap(), "it waits to join");
+    }
+
+    #[test]
+    fn who_comes_late_is_told_so_however_late() {
+        let scenario = scenario();
+        for (step, is_late) in [(1, false), (2, true), (MOST_AHEAD + 7, true)] {
+            let mut observatory = observatory(&scenario);
+            let report = serde_json::to_vec(&report(&observatory, 2, step)).unwrap();
+            let taken = observatory.take(Arrival::Report(2, report));
+            assert_eq!(taken.is_err(), is_late, "k = {step}: {taken:?}");
         }
     }
 }
