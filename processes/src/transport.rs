@@ -5,6 +5,8 @@
 //! with another scenario or session do not hear each other. Only hellos are without a digest, so that
 //! a process with another scenario is told by name.
 
+#[cfg(test)]
+use crate::arguments::Seconds;
 use crate::arguments::{NetworkArguments, Session};
 use crate::packet::{LONGEST_PACKET, Refusal, Refusals};
 use crate::repeats;
@@ -179,6 +181,22 @@ impl Transport {
             _subscribers: subscribers,
             _tokens: Vec::new(),
         })
+    }
+
+    /// A process to which these things come, and that is connected to nobody.
+    #[cfg(test)]
+    pub fn of(arrivals: Receiver<Arrival>) -> Self {
+        let arguments = NetworkArguments {
+            session: Session("test".into()),
+            listen: Vec::new(),
+            connect: Vec::new(),
+            multicast: false,
+            zenoh: None,
+            wait: Seconds(Duration::from_secs(1)),
+        };
+        let alone = Endpoints { listen: "tcp/127.0.0.1:0", connect: None };
+        let transport = Transport::open(&arguments, alone, "test", Interest::Packets);
+        Transport { arrivals, ..transport.unwrap() }
     }
 
     /// What a node sends with. Observers see that it is there.

@@ -182,8 +182,7 @@ impl<'a> Observatory<'a> {
                 if self.step == 0 {
                     return Err(Failure::Usage(self.nobody_reports()));
                 }
-                let seconds = self.wait.as_secs_f64();
-                break self.broken_off(format!("nobody has reported for {seconds} s"));
+                break self.broken_off(self.silence());
             }
         };
         transport.count_overflow(&mut self.refusals);
@@ -204,6 +203,19 @@ impl<'a> Observatory<'a> {
         }
     }
 
+    /// What has kept the next control period from being shown for so long.
+    fn silence(&self) -> String {
+        let (seconds, step) = (self.wait.as_secs_f64(), self.step);
+        if self.is_passed_over() {
+            format!(
+                "no report on k = {step} has come within {seconds} s, and reports on later control \
+                 periods have: this observer was cut off for a while, and watching ends"
+            )
+        } else {
+            format!("nobody has reported for {seconds} s")
+        }
+    }
+
     fn broken_off(&self, what: String) -> End {
         let reason = format!("{what} at k = {}", self.step.saturating_sub(1));
         End::new(Outcome::Interrupted, reason, None)
@@ -211,8 +223,8 @@ impl<'a> Observatory<'a> {
 
     // ---- What arrives ------------------------------------------------------------------------
 
-    /// Takes in what has arrived, and says whether it is news of the mission: a report, or that a process
-    /// waits for the mission to begin.
+    /// Takes in what has arrived, and says whether it is news of the mission: a report, unless it only
+    /// comes after a period that nobody reports; or that a process waits for the mission to begin.
     fn take(&mut self, arrival: Arrival) -> Result<bool, Failure> {
         let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
         let taken = match arrival {
@@ -223,7 +235,7 @@ impl<'a> Observatory<'a> {
             }
             Arrival::Report(from, bytes) => Report::decode(&bytes, self.scenario)
                 .and_then(|report| self.enter(from, report))
-                .map(|()| true),
+                .map(|()| !self.is_passed_over()),
             Arrival::Alive(node, is_there) => {
                 self.note_life(node, is_there);
                 Ok(false)
@@ -296,6 +308,12 @@ impl<'a> Observatory<'a> {
     /// Whether a report has come from so late a period that of the one shown next no more is expected.
     fn has_later_reports(&self) -> bool {
         self.reports.range(self.step + PERIODS_APART..).next().is_some()
+    }
+
+    /// Whether the reports of the next control period should be there, and not one is. No snapshot is made
+    /// of nothing: it would say that all robots stood still, and they have moved.
+    fn is_passed_over(&self) -> bool {
+        !self.reports.contains_key(&self.step) && self.has_later_reports()
     }
 
     /// Whether all reports of a control period have come that will.
@@ -395,7 +413,10 @@ impl<'a> Observatory<'a> {
 mod tests {
     use super::*;
     use crate::transport::Hello;
+    use pleach::mission::Watcher;
     use pleach::scenario_file;
+    use std::sync::mpsc::sync_channel;
+    use std::thread;
 
     fn scenario() -> ValidScenario {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/too-few.toml");
@@ -472,5 +493,39 @@ mod tests {
             let taken = observatory.take(Arrival::Report(2, report));
             assert_eq!(taken.is_err(), is_late, "k = {step}: {taken:?}");
         }
+    }
+
+    #[test]
+    fn watching_ends_where_all_reports_on_a_control_period_are_lost() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let nodes = scenario.robot.len() + scenario.access_point.len() + 1;
+        let of = |step| (0..nodes).map(move |node| (node, step));
+        let reports: Vec<Arrival> = of(0)
+            .chain((2..100).flat_map(of))
+            .map(|(node, step)| {
+                let report = report(&observatory, node, step);
+                Arrival::Report(node, serde_json::to_vec(&report).unwrap())
+            })
+            .collect();
+        // They come for five seconds, much longer than the observer waits.
+        let (sender, arrivals) = sync_channel(nodes);
+        let mission = thread::spawn(move || {
+            reports.into_iter().try_for_each(|report| {
+                thread::sleep(Duration::from_millis(8));
+                sender.send(report)
+            })
+        });
+        let transport = Transport::of(arrivals);
+        let mut watchers: [&mut dyn Watcher; 0] = [];
+        let faults = Faults { messages: true, nodes: true };
+        let gallery = Gallery::with_faults(&scenario, faults, &mut watchers);
+        let interrupt = Interrupt::listen().unwrap();
+        let mut nowhere = |_| Ok(Vec::new());
+        let completed = observatory.watch(&transport, gallery, &interrupt, &mut nowhere).unwrap();
+        assert!(!mission.is_finished(), "it waits for no other report");
+        let End { outcome, reason, .. } = completed.end;
+        assert_eq!(outcome, Outcome::Interrupted, "{reason}");
+        assert!(reason.contains("no report on k = 1") && reason.ends_with("k = 0"), "{reason}");
     }
 }
