@@ -239,10 +239,10 @@ impl<'a> Process<'a> {
 
     // ---- Before it runs ----------------------------------------------------------------------
 
-    /// Waits until all nodes of the scenario are there, or the mission is seen to go on. Says which
-    /// control period is the first; none after a signal.
+    /// Waits until all nodes of the scenario are there, or the mission is seen to go on, and then for its
+    /// next control period. Says which control period is the first; none after a signal.
     fn wait_for_others(&mut self) -> Result<Option<u32>, Failure> {
-        let deadline = Instant::now() + self.parts.wait;
+        let mut deadline = Instant::now() + self.parts.wait;
         let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
         let own = || self.ids.iter().copied();
         // The nodes that are heard, and those that say that they hear all others.
@@ -263,7 +263,11 @@ impl<'a> Process<'a> {
                     ready.extend(hello.hears_all.then_some(*from));
                     self.lockstep.expect(*from);
                 }
+                let latest = self.lockstep.latest();
                 self.take(arrival)?;
+                if self.lockstep.latest() > latest {
+                    deadline = Instant::now() + self.parts.wait;
+                }
             }
             if let Some(period) = self.first_period() {
                 return Ok(Some(period));
@@ -277,7 +281,8 @@ impl<'a> Process<'a> {
                 return Ok(Some(0));
             }
             if is_late {
-                return Err(Failure::Usage(self.nobody_is_heard()));
+                let what = self.lockstep.latest().map(|latest| self.mission_stands_still(latest));
+                return Err(Failure::Usage(what.unwrap_or_else(|| self.nobody_is_heard())));
             }
         }
     }
@@ -288,6 +293,17 @@ impl<'a> Process<'a> {
         let earliest = self.lockstep.earliest()?;
         let first = Stamp { period: 0, round: 1, answer: 0 };
         if earliest == first { Some(0) } else { self.lockstep.later_period(earliest.period) }
+    }
+
+    /// What is said where a mission is heard, but no next control period of it.
+    fn mission_stands_still(&self, latest: Stamp) -> String {
+        let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
+        let Stamp { period, round, .. } = latest;
+        format!(
+            "{own} has heard the mission in round {round} of k = {period}, and nothing later for \
+             {seconds} s, so that it cannot join with the next control period: is the mission over? If \
+             a control period takes longer, wait for it with --wait"
+        )
     }
 
     fn nobody_is_heard(&self) -> String {
@@ -490,5 +506,78 @@ impl<'a> Process<'a> {
             thread::sleep(rest);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::Seconds;
+    use pleach::cli::faults::Share;
+    use std::sync::mpsc::{SyncSender, sync_channel};
+
+    fn scenario() -> ValidScenario {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/too-few.toml");
+        scenario_file::read(&path).unwrap()
+    }
+
+    const OPTIONS: NodeArguments = NodeArguments {
+        limit: Seconds(Duration::from_millis(100)),
+        loss: Share(0.0),
+        seed: 1,
+        real_time: false,
+    };
+
+    /// The process of robot 0, which waits half a second, and what sends to it.
+    fn robot(scenario: &ValidScenario) -> (Process<'_>, SyncSender<Arrival>) {
+        let (sender, arrivals) = sync_channel(64);
+        let parts = Parts {
+            nodes: LocalNodes::robot(scenario, 0, scenario.robot[0].position.into()),
+            memory: None,
+            transport: Transport::of(arrivals),
+            digest: "abc".into(),
+            wait: Duration::from_millis(500),
+        };
+        (Process::new(scenario, parts, &OPTIONS).unwrap(), sender)
+    }
+
+    fn packet(period: u32, round: u32) -> Arrival {
+        let packet = Packet {
+            stamp: Stamp { period, round, answer: 0 },
+            next: None,
+            asks: false,
+            is_over: false,
+            position: [0.3, 0.2],
+            letters: Vec::new(),
+        };
+        Arrival::Packet(1, packet.encode().unwrap())
+    }
+
+    #[test]
+    fn who_joins_a_mission_waits_for_its_next_control_period() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        // The rounds of this period take longer than a process waits that hears nothing.
+        let mission = thread::spawn(move || {
+            for round in 3..10 {
+                thread::sleep(Duration::from_millis(100));
+                sender.send(packet(4, round)).unwrap();
+            }
+            sender.send(packet(5, 1)).unwrap();
+            sender
+        });
+        assert_eq!(robot.wait_for_others().unwrap(), Some(5));
+        mission.join().unwrap();
+    }
+
+    #[test]
+    fn a_mission_that_stands_still_is_not_joined() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        sender.send(packet(4, 3)).unwrap();
+        let said = robot.wait_for_others().unwrap_err().to_string();
+        let begin =
+            "robot 0 has heard the mission in round 3 of k = 4, and nothing later for 0.5 s";
+        assert!(said.starts_with(begin), "{said}");
     }
 }
