@@ -9,7 +9,9 @@ use crate::packet::{LONGEST_PACKET, Packet, Refusals, Stamp};
 use crate::receiver::Receiver;
 use crate::report::{Report, Tally};
 use crate::strangers::Strangers;
-use crate::transport::{Arrival, Endpoints, Hello, Interest, Sender, Transport, digest};
+use crate::transport::{
+    Arrival, Endpoints, Hello, Interest, LONGEST_QUEUE, Sender, Transport, digest,
+};
 use pleach::automaton::network::record::MissionEvent;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::node::NodeId;
@@ -448,25 +450,46 @@ impl<'a> Process<'a> {
     /// process goes on.
     fn wait_for_packets(&mut self, stamp: Stamp) -> Result<bool, Failure> {
         let deadline = Instant::now() + self.options.limit.0;
-        while self.lockstep.missing().next().is_some() && !self.lockstep.is_overtaken() {
-            if self.interrupt.signal().is_some() {
-                return Ok(false);
-            }
+        while self.is_round_open() && self.interrupt.signal().is_none() {
             let rest = deadline.saturating_duration_since(Instant::now());
-            match self.parts.transport.next_within(rest.min(GLANCE)) {
-                Some(arrival) => self.take(arrival)?,
-                None if rest.is_zero() => {
-                    for node in self.lockstep.give_up() {
-                        self.given_up += 1;
-                        let (own, other) = (self.own_name(), name_of(self.scenario, node));
-                        let period = stamp.period;
-                        tell(format_args!("k = {period:<6} {own} goes on without {other}"));
-                    }
-                }
-                None => {}
+            if rest.is_zero() {
+                self.read_what_has_come()?;
+                self.go_on_without_the_missing(stamp);
+            } else if let Some(arrival) = self.parts.transport.next_within(rest.min(GLANCE)) {
+                self.take(arrival)?;
             }
         }
         Ok(self.interrupt.signal().is_none())
+    }
+
+    /// Whether packets of this round are missing, and others have not gone on without this process.
+    fn is_round_open(&self) -> bool {
+        self.lockstep.missing().next().is_some() && !self.lockstep.is_overtaken()
+    }
+
+    /// Reads what waits to be read: a process that was held up finds the packets of others there. More
+    /// may come all the time, and is left for later.
+    fn read_what_has_come(&mut self) -> Result<(), Failure> {
+        for _ in 0..LONGEST_QUEUE {
+            match self.parts.transport.next_within(Duration::ZERO) {
+                Some(arrival) => self.take(arrival)?,
+                None => break,
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives up the nodes whose packet has not come, unless others have gone on without this process.
+    fn go_on_without_the_missing(&mut self, stamp: Stamp) {
+        if !self.is_round_open() {
+            return;
+        }
+        for node in self.lockstep.give_up() {
+            self.given_up += 1;
+            let (own, other) = (self.own_name(), name_of(self.scenario, node));
+            let period = stamp.period;
+            tell(format_args!("k = {period:<6} {own} goes on without {other}"));
+        }
     }
 
     fn report(&mut self, period: u32) -> Result<(), Failure> {
@@ -513,6 +536,7 @@ impl<'a> Process<'a> {
 mod tests {
     use super::*;
     use crate::arguments::Seconds;
+    use crate::packet::Letter;
     use pleach::cli::faults::Share;
     use std::sync::mpsc::{SyncSender, sync_channel};
 
@@ -530,7 +554,7 @@ mod tests {
 
     /// The process of robot 0, which waits half a second, and what sends to it.
     fn robot(scenario: &ValidScenario) -> (Process<'_>, SyncSender<Arrival>) {
-        let (sender, arrivals) = sync_channel(64);
+        let (sender, arrivals) = sync_channel(LONGEST_QUEUE);
         let parts = Parts {
             nodes: LocalNodes::robot(scenario, 0, scenario.robot[0].position.into()),
             memory: None,
@@ -542,15 +566,19 @@ mod tests {
     }
 
     fn packet(period: u32, round: u32) -> Arrival {
+        packet_with(1, period, round, Vec::new())
+    }
+
+    fn packet_with(from: NodeId, period: u32, round: u32, letters: Vec<Letter>) -> Arrival {
         let packet = Packet {
             stamp: Stamp { period, round, answer: 0 },
             next: None,
             asks: false,
             is_over: false,
             position: [0.3, 0.2],
-            letters: Vec::new(),
+            letters,
         };
-        Arrival::Packet(1, packet.encode().unwrap())
+        Arrival::Packet(from, packet.encode().unwrap())
     }
 
     #[test]
@@ -579,5 +607,38 @@ mod tests {
         let begin =
             "robot 0 has heard the mission in round 3 of k = 4, and nothing later for 0.5 s";
         assert!(said.starts_with(begin), "{said}");
+    }
+
+    const ROUND: Stamp = Stamp { period: 3, round: 1, answer: 0 };
+
+    #[test]
+    fn a_round_ends_although_others_send_without_end() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        robot.lockstep.expect(1);
+        robot.lockstep.go_on_to(ROUND);
+        // Such a packet takes longer to read than to send.
+        let letter = Letter { to: None, message: vec![0; 9], beacon: None };
+        let Arrival::Packet(_, bytes) = packet_with(2, 4, 1, vec![letter; 100]) else { return };
+        let flood = thread::spawn(move || {
+            let end = Instant::now() + Duration::from_secs(5);
+            while Instant::now() < end && sender.send(Arrival::Packet(2, bytes.clone())).is_ok() {}
+        });
+        assert!(robot.wait_for_packets(ROUND).unwrap());
+        assert!(!flood.is_finished(), "it waits no longer than the limit");
+        assert_eq!(robot.given_up, 1);
+    }
+
+    #[test]
+    fn who_was_held_up_reads_what_has_come_before_it_gives_others_up() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        let options = NodeArguments { limit: Seconds(Duration::ZERO), ..OPTIONS };
+        robot.options = &options;
+        robot.lockstep.expect(1);
+        robot.lockstep.go_on_to(ROUND);
+        sender.send(packet(3, 1)).unwrap();
+        assert!(robot.wait_for_packets(ROUND).unwrap());
+        assert_eq!((robot.given_up, robot.lockstep.expected()), (0, 1));
     }
 }

@@ -29,7 +29,7 @@ use zenoh::sample::{Locality, Sample, SampleKind};
 /// The most bytes of a hello: a name has at most a hundred.
 const LONGEST_HELLO: usize = 1 << 10;
 /// The most that waits to be read.
-const LONGEST_QUEUE: usize = 1 << 14;
+pub const LONGEST_QUEUE: usize = 1 << 14;
 
 /// How many batches wait for a receiver that is slow.
 const QUEUED_BATCHES: u32 = 16;
