@@ -384,12 +384,12 @@ impl<'a> Process<'a> {
     // ---- A control period --------------------------------------------------------------------
 
     fn take_part_in(&mut self, period: u32) -> Result<Period, Failure> {
-        self.say_hello();
         self.parts.nodes.begin_period();
         self.events.iter_mut().for_each(Vec::clear);
         let mut stamp = Stamp { period, round: 1, answer: 0 };
         let mut heard = Vec::new();
         for _ in 0..MOST_EXCHANGES {
+            self.say_hello();
             self.lockstep.go_on_to(stamp);
             self.parts.nodes.hear(&heard).map_err(internal)?;
             if stamp.answer == 0 {
@@ -451,6 +451,7 @@ impl<'a> Process<'a> {
     fn wait_for_packets(&mut self, stamp: Stamp) -> Result<bool, Failure> {
         let deadline = Instant::now() + self.options.limit.0;
         while self.is_round_open() && self.interrupt.signal().is_none() {
+            self.say_hello();
             let rest = deadline.saturating_duration_since(Instant::now());
             if rest.is_zero() {
                 self.read_what_has_come()?;
@@ -525,10 +526,20 @@ impl<'a> Process<'a> {
             memory.write(node.body().into())?;
         }
         if self.options.real_time {
-            let rest = Duration::from_secs_f64(duration).saturating_sub(begin.elapsed());
-            thread::sleep(rest);
+            self.rest_until(begin + Duration::from_secs_f64(duration));
         }
         Ok(())
+    }
+
+    /// Rests until then, or until a signal comes. Others may look for this process the while.
+    fn rest_until(&mut self, end: Instant) {
+        while self.interrupt.signal().is_none() {
+            self.say_hello();
+            match end.saturating_duration_since(Instant::now()) {
+                Duration::ZERO => break,
+                rest => thread::sleep(rest.min(GLANCE)),
+            }
+        }
     }
 }
 
@@ -640,5 +651,27 @@ mod tests {
         sender.send(packet(3, 1)).unwrap();
         assert!(robot.wait_for_packets(ROUND).unwrap());
         assert_eq!((robot.given_up, robot.lockstep.expected()), (0, 1));
+    }
+
+    #[test]
+    fn hello_is_said_every_second_also_in_a_long_control_period() {
+        let scenario = scenario();
+        let (mut robot, _sender) = robot(&scenario);
+        robot.is_running = true;
+        let (almost_due, wait) = (HELLO_WHILE_RUNNING - GLANCE, 3 * GLANCE);
+        // While it rests until the next control period begins.
+        let earlier = Instant::now() - almost_due;
+        robot.last_hello = Some(earlier);
+        robot.rest_until(Instant::now() + wait);
+        assert!(robot.last_hello > Some(earlier));
+        // While it waits for packets.
+        let earlier = Instant::now() - almost_due;
+        robot.last_hello = Some(earlier);
+        let options = NodeArguments { limit: Seconds(wait), ..OPTIONS };
+        robot.options = &options;
+        robot.lockstep.expect(1);
+        robot.lockstep.go_on_to(ROUND);
+        assert!(robot.wait_for_packets(ROUND).unwrap());
+        assert!(robot.last_hello > Some(earlier));
     }
 }
