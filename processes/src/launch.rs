@@ -13,6 +13,7 @@ use pleach::cli::plan::Planned;
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use std::fs;
+use std::io::ErrorKind;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -20,6 +21,8 @@ use std::time::Duration;
 
 /// How long a launched process, and who watches it, waits for the others.
 const WAIT: Duration = Duration::from_secs(60);
+/// How many names are tried for the folder of a launch.
+const MOST_NAMES: usize = 1 << 10;
 
 /// Launches a mission.
 ///
@@ -87,11 +90,18 @@ fn free_port() -> Result<u16, Failure> {
 struct Folder(PathBuf);
 
 impl Folder {
+    /// A new folder. One that is there was left behind by a launch that was killed, whose number may
+    /// come again: robots would begin where that launch has left them.
     fn new(name: &str) -> Result<Self, Failure> {
-        let path = std::env::temp_dir().join(format!("pleach-{name}"));
-        match fs::create_dir_all(&path) {
-            Ok(()) => Ok(Folder(path)),
-            Err(source) => Err(Failure::Creation { path, source }),
+        let place = std::env::temp_dir();
+        let mut number = 1;
+        loop {
+            let path = place.join(format!("pleach-{name}-{number}"));
+            match fs::create_dir(&path).map_err(|error| (error.kind(), error)) {
+                Ok(()) => return Ok(Folder(path)),
+                Err((ErrorKind::AlreadyExists, _)) if number < MOST_NAMES => number += 1,
+                Err((_, source)) => return Err(Failure::Creation { path, source }),
+            }
         }
     }
 
@@ -191,5 +201,22 @@ impl Drop for Fleet {
             self.robots.iter_mut().chain([&mut self.access_points]).flatten().collect();
         processes.iter_mut().for_each(|process| drop(process.kill()));
         processes.iter_mut().for_each(|process| drop(process.wait()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_that_was_left_behind_is_not_taken() {
+        let name = format!("folder-{}", std::process::id());
+        let left_behind = Folder::new(&name).unwrap();
+        fs::write(left_behind.state_of(0), "of an earlier launch").unwrap();
+        let folder = Folder::new(&name).unwrap();
+        assert!(!folder.state_of(0).exists());
+        let path = folder.0.clone();
+        drop(folder);
+        assert!(!path.exists() && left_behind.state_of(0).exists());
     }
 }

@@ -5,8 +5,8 @@
 //! packet on its way: [`packet`] says how it is written and what is refused, [`transport`] carries
 //! it, [`lockstep`] says when all packets of a round have come, [`receiver`] which of its messages
 //! reach a node, and [`local_nodes`] hands them to the nodes of a process. [`process`] is the loop around
-//! them. What observers read are [`report`]s; [`watch`] makes snapshots of them, and [`launch`] starts
-//! all processes of a scenario on this machine.
+//! them; [`strangers`] are those that it cannot meet. What observers read are [`report`]s; [`watch`]
+//! makes snapshots of them, and [`launch`] starts all processes of a scenario on this machine.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
 
@@ -20,6 +20,7 @@ pub mod process;
 pub mod receiver;
 pub mod repeats;
 pub mod report;
+pub mod strangers;
 pub mod transport;
 pub mod watch;
 

@@ -144,6 +144,11 @@ impl Lockstep {
     pub fn earliest(&self) -> Option<Stamp> {
         self.waiting.values().filter_map(|packets| packets.keys().next().copied()).min()
     }
+
+    /// The last packet that has come, in the order of time.
+    pub fn latest(&self) -> Option<Stamp> {
+        self.newest.values().max().copied()
+    }
 }
 
 /// What follows a round in which these packets were sent: answers, or another round of ticks; none if

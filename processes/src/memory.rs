@@ -75,9 +75,15 @@ impl Memory {
     /// The file cannot be written.
     pub fn write(&mut self, position: [f64; 2]) -> io::Result<()> {
         self.state.position = position;
-        let beside = self.path.with_extension("new");
+        let beside = self.beside();
         fs::write(&beside, serde_json::to_string(&self.state)?)?;
         fs::rename(&beside, &self.path)
+    }
+
+    /// Where the next state is written before it takes the place of the last one: `3.json.new`, since
+    /// the files of other robots may differ from this one in their extension only.
+    fn beside(&self) -> PathBuf {
+        self.path.with_added_extension("new")
     }
 }
 
@@ -100,5 +106,13 @@ mod tests {
         fs::write(&path, "{").unwrap();
         assert!(Memory::open(&path, "abc", 3, [0.0, 0.0]).is_err());
         fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn files_that_differ_in_their_extension_are_written_apart() {
+        let memory = |name: &str| Memory::open(Path::new(name), "abc", 3, [0.0, 0.0]).unwrap();
+        let [one, other] = ["run/state.0", "run/state.1"].map(|name| memory(name).beside());
+        assert_eq!(one, Path::new("run/state.0.new"));
+        assert_eq!(other, Path::new("run/state.1.new"));
     }
 }

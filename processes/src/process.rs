@@ -8,7 +8,10 @@ use crate::memory::Memory;
 use crate::packet::{LONGEST_PACKET, Packet, Refusals, Stamp};
 use crate::receiver::Receiver;
 use crate::report::{Report, Tally};
-use crate::transport::{Arrival, Endpoints, Hello, Interest, Sender, Transport, digest};
+use crate::strangers::Strangers;
+use crate::transport::{
+    Arrival, Endpoints, Hello, Interest, LONGEST_QUEUE, Sender, Transport, digest,
+};
 use pleach::automaton::network::record::MissionEvent;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::node::NodeId;
@@ -145,8 +148,7 @@ struct Process<'a> {
     hears_all: bool,
     is_running: bool,
     last_hello: Option<Instant>,
-    /// Nodes with other scenarios that have been told of.
-    strangers: BTreeSet<NodeId>,
+    strangers: Strangers<'a>,
     events: Vec<Vec<(u32, u32, MissionEvent)>>,
     interrupt: Interrupt,
 }
@@ -189,7 +191,7 @@ impl<'a> Process<'a> {
             hears_all: false,
             is_running: false,
             last_hello: None,
-            strangers: BTreeSet::new(),
+            strangers: Strangers::to(scenario, &parts.digest),
             events: vec![Vec::new(); ids.len()],
             interrupt: Interrupt::listen()?,
             ids,
@@ -239,10 +241,10 @@ impl<'a> Process<'a> {
 
     // ---- Before it runs ----------------------------------------------------------------------
 
-    /// Waits until all nodes of the scenario are there, or the mission is seen to go on. Says which
-    /// control period is the first; none after a signal.
+    /// Waits until all nodes of the scenario are there, or the mission is seen to go on, and then for its
+    /// next control period. Says which control period is the first; none after a signal.
     fn wait_for_others(&mut self) -> Result<Option<u32>, Failure> {
-        let deadline = Instant::now() + self.parts.wait;
+        let mut deadline = Instant::now() + self.parts.wait;
         let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
         let own = || self.ids.iter().copied();
         // The nodes that are heard, and those that say that they hear all others.
@@ -263,7 +265,11 @@ impl<'a> Process<'a> {
                     ready.extend(hello.hears_all.then_some(*from));
                     self.lockstep.expect(*from);
                 }
+                let latest = self.lockstep.latest();
                 self.take(arrival)?;
+                if self.lockstep.latest() > latest {
+                    deadline = Instant::now() + self.parts.wait;
+                }
             }
             if let Some(period) = self.first_period() {
                 return Ok(Some(period));
@@ -277,7 +283,8 @@ impl<'a> Process<'a> {
                 return Ok(Some(0));
             }
             if is_late {
-                return Err(Failure::Usage(self.nobody_is_heard()));
+                let what = self.lockstep.latest().map(|latest| self.mission_stands_still(latest));
+                return Err(Failure::Usage(what.unwrap_or_else(|| self.nobody_is_heard())));
             }
         }
     }
@@ -290,19 +297,29 @@ impl<'a> Process<'a> {
         if earliest == first { Some(0) } else { self.lockstep.later_period(earliest.period) }
     }
 
+    /// What is said where a mission is heard, but no next control period of it.
+    fn mission_stands_still(&self, latest: Stamp) -> String {
+        let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
+        let Stamp { period, round, .. } = latest;
+        format!(
+            "{own} has heard the mission in round {round} of k = {period}, and nothing later for \
+             {seconds} s, so that it cannot join with the next control period: is the mission over? If \
+             a control period takes longer, wait for it with --wait"
+        )
+    }
+
     fn nobody_is_heard(&self) -> String {
         let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
-        let Some(name) = self.strangers.first().map(|_| &self.scenario.name) else {
-            return format!(
+        match (self.strangers.count(), &self.scenario.name) {
+            (0, _) => format!(
                 "{own} has heard no other node within {seconds} s: are they started, with the same \
                  --session, and does --connect name an endpoint at which one listens?"
-            );
-        };
-        let others = self.strangers.len();
-        format!(
-            "{own} has heard no other node with the scenario {name:?} within {seconds} s, and {others} \
-             with another one"
-        )
+            ),
+            (others, name) => format!(
+                "{own} has heard no other node with the scenario {name:?} within {seconds} s, and \
+                 {others} with another one"
+            ),
+        }
     }
 
     fn say_hello(&mut self) {
@@ -348,15 +365,8 @@ impl<'a> Process<'a> {
     }
 
     fn take_hello(&mut self, from: NodeId, hello: Hello) -> Result<(), Failure> {
-        if hello.digest != self.parts.digest {
-            if self.strangers.insert(from) {
-                let Hello { name, scenario, digest, .. } = hello;
-                let other = format!("{name:?} of this session has the scenario {scenario:?}");
-                let own = format!("{:?} ({})", self.scenario.name, self.parts.digest);
-                let rule = "all processes start with the same file";
-                tell(format_args!("warning: {other} ({digest}) and not {own}; {rule}"));
-            }
-        } else if self.ids.contains(&from) && hello.started != self.started {
+        let is_stranger = self.strangers.recognise(from, &hello);
+        if !is_stranger && self.ids.contains(&from) && hello.started != self.started {
             // Of two processes that wait, the one that was started later gives way.
             if !self.is_running && (hello.is_running || hello.started < self.started) {
                 return Err(self.runs_already(from));
@@ -374,12 +384,12 @@ impl<'a> Process<'a> {
     // ---- A control period --------------------------------------------------------------------
 
     fn take_part_in(&mut self, period: u32) -> Result<Period, Failure> {
-        self.say_hello();
         self.parts.nodes.begin_period();
         self.events.iter_mut().for_each(Vec::clear);
         let mut stamp = Stamp { period, round: 1, answer: 0 };
         let mut heard = Vec::new();
         for _ in 0..MOST_EXCHANGES {
+            self.say_hello();
             self.lockstep.go_on_to(stamp);
             self.parts.nodes.hear(&heard).map_err(internal)?;
             if stamp.answer == 0 {
@@ -440,25 +450,47 @@ impl<'a> Process<'a> {
     /// process goes on.
     fn wait_for_packets(&mut self, stamp: Stamp) -> Result<bool, Failure> {
         let deadline = Instant::now() + self.options.limit.0;
-        while self.lockstep.missing().next().is_some() && !self.lockstep.is_overtaken() {
-            if self.interrupt.signal().is_some() {
-                return Ok(false);
-            }
+        while self.is_round_open() && self.interrupt.signal().is_none() {
+            self.say_hello();
             let rest = deadline.saturating_duration_since(Instant::now());
-            match self.parts.transport.next_within(rest.min(GLANCE)) {
-                Some(arrival) => self.take(arrival)?,
-                None if rest.is_zero() => {
-                    for node in self.lockstep.give_up() {
-                        self.given_up += 1;
-                        let (own, other) = (self.own_name(), name_of(self.scenario, node));
-                        let period = stamp.period;
-                        tell(format_args!("k = {period:<6} {own} goes on without {other}"));
-                    }
-                }
-                None => {}
+            if rest.is_zero() {
+                self.read_what_has_come()?;
+                self.go_on_without_the_missing(stamp);
+            } else if let Some(arrival) = self.parts.transport.next_within(rest.min(GLANCE)) {
+                self.take(arrival)?;
             }
         }
         Ok(self.interrupt.signal().is_none())
+    }
+
+    /// Whether packets of this round are missing, and others have not gone on without this process.
+    fn is_round_open(&self) -> bool {
+        self.lockstep.missing().next().is_some() && !self.lockstep.is_overtaken()
+    }
+
+    /// Reads what waits to be read: a process that was held up finds the packets of others there. More
+    /// may come all the time, and is left for later.
+    fn read_what_has_come(&mut self) -> Result<(), Failure> {
+        for _ in 0..LONGEST_QUEUE {
+            match self.parts.transport.next_within(Duration::ZERO) {
+                Some(arrival) => self.take(arrival)?,
+                None => break,
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives up the nodes whose packet has not come, unless others have gone on without this process.
+    fn go_on_without_the_missing(&mut self, stamp: Stamp) {
+        if !self.is_round_open() {
+            return;
+        }
+        for node in self.lockstep.give_up() {
+            self.given_up += 1;
+            let (own, other) = (self.own_name(), name_of(self.scenario, node));
+            let period = stamp.period;
+            tell(format_args!("k = {period:<6} {own} goes on without {other}"));
+        }
     }
 
     fn report(&mut self, period: u32) -> Result<(), Failure> {
@@ -494,9 +526,152 @@ impl<'a> Process<'a> {
             memory.write(node.body().into())?;
         }
         if self.options.real_time {
-            let rest = Duration::from_secs_f64(duration).saturating_sub(begin.elapsed());
-            thread::sleep(rest);
+            self.rest_until(begin + Duration::from_secs_f64(duration));
         }
         Ok(())
+    }
+
+    /// Rests until then, or until a signal comes. Others may look for this process the while.
+    fn rest_until(&mut self, end: Instant) {
+        while self.interrupt.signal().is_none() {
+            self.say_hello();
+            match end.saturating_duration_since(Instant::now()) {
+                Duration::ZERO => break,
+                rest => thread::sleep(rest.min(GLANCE)),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::Seconds;
+    use crate::packet::Letter;
+    use pleach::cli::faults::Share;
+    use std::sync::mpsc::{SyncSender, sync_channel};
+
+    fn scenario() -> ValidScenario {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/too-few.toml");
+        scenario_file::read(&path).unwrap()
+    }
+
+    const OPTIONS: NodeArguments = NodeArguments {
+        limit: Seconds(Duration::from_millis(100)),
+        loss: Share(0.0),
+        seed: 1,
+        real_time: false,
+    };
+
+    /// The process of robot 0, which waits half a second, and what sends to it.
+    fn robot(scenario: &ValidScenario) -> (Process<'_>, SyncSender<Arrival>) {
+        let (sender, arrivals) = sync_channel(LONGEST_QUEUE);
+        let parts = Parts {
+            nodes: LocalNodes::robot(scenario, 0, scenario.robot[0].position.into()),
+            memory: None,
+            transport: Transport::of(arrivals),
+            digest: "abc".into(),
+            wait: Duration::from_millis(500),
+        };
+        (Process::new(scenario, parts, &OPTIONS).unwrap(), sender)
+    }
+
+    fn packet(period: u32, round: u32) -> Arrival {
+        packet_with(1, period, round, Vec::new())
+    }
+
+    fn packet_with(from: NodeId, period: u32, round: u32, letters: Vec<Letter>) -> Arrival {
+        let packet = Packet {
+            stamp: Stamp { period, round, answer: 0 },
+            next: None,
+            asks: false,
+            is_over: false,
+            position: [0.3, 0.2],
+            letters,
+        };
+        Arrival::Packet(from, packet.encode().unwrap())
+    }
+
+    #[test]
+    fn who_joins_a_mission_waits_for_its_next_control_period() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        // The rounds of this period take longer than a process waits that hears nothing.
+        let mission = thread::spawn(move || {
+            for round in 3..10 {
+                thread::sleep(Duration::from_millis(100));
+                sender.send(packet(4, round)).unwrap();
+            }
+            sender.send(packet(5, 1)).unwrap();
+            sender
+        });
+        assert_eq!(robot.wait_for_others().unwrap(), Some(5));
+        mission.join().unwrap();
+    }
+
+    #[test]
+    fn a_mission_that_stands_still_is_not_joined() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        sender.send(packet(4, 3)).unwrap();
+        let said = robot.wait_for_others().unwrap_err().to_string();
+        let begin =
+            "robot 0 has heard the mission in round 3 of k = 4, and nothing later for 0.5 s";
+        assert!(said.starts_with(begin), "{said}");
+    }
+
+    const ROUND: Stamp = Stamp { period: 3, round: 1, answer: 0 };
+
+    #[test]
+    fn a_round_ends_although_others_send_without_end() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        robot.lockstep.expect(1);
+        robot.lockstep.go_on_to(ROUND);
+        // Such a packet takes longer to read than to send.
+        let letter = Letter { to: None, message: vec![0; 9], beacon: None };
+        let Arrival::Packet(_, bytes) = packet_with(2, 4, 1, vec![letter; 100]) else { return };
+        let flood = thread::spawn(move || {
+            let end = Instant::now() + Duration::from_secs(5);
+            while Instant::now() < end && sender.send(Arrival::Packet(2, bytes.clone())).is_ok() {}
+        });
+        assert!(robot.wait_for_packets(ROUND).unwrap());
+        assert!(!flood.is_finished(), "it waits no longer than the limit");
+        assert_eq!(robot.given_up, 1);
+    }
+
+    #[test]
+    fn who_was_held_up_reads_what_has_come_before_it_gives_others_up() {
+        let scenario = scenario();
+        let (mut robot, sender) = robot(&scenario);
+        let options = NodeArguments { limit: Seconds(Duration::ZERO), ..OPTIONS };
+        robot.options = &options;
+        robot.lockstep.expect(1);
+        robot.lockstep.go_on_to(ROUND);
+        sender.send(packet(3, 1)).unwrap();
+        assert!(robot.wait_for_packets(ROUND).unwrap());
+        assert_eq!((robot.given_up, robot.lockstep.expected()), (0, 1));
+    }
+
+    #[test]
+    fn hello_is_said_every_second_also_in_a_long_control_period() {
+        let scenario = scenario();
+        let (mut robot, _sender) = robot(&scenario);
+        robot.is_running = true;
+        let (almost_due, wait) = (HELLO_WHILE_RUNNING - GLANCE, 3 * GLANCE);
+        // While it rests until the next control period begins.
+        let earlier = Instant::now() - almost_due;
+        robot.last_hello = Some(earlier);
+        robot.rest_until(Instant::now() + wait);
+        assert!(robot.last_hello > Some(earlier));
+        // While it waits for packets.
+        let earlier = Instant::now() - almost_due;
+        robot.last_hello = Some(earlier);
+        let options = NodeArguments { limit: Seconds(wait), ..OPTIONS };
+        robot.options = &options;
+        robot.lockstep.expect(1);
+        robot.lockstep.go_on_to(ROUND);
+        assert!(robot.wait_for_packets(ROUND).unwrap());
+        assert!(robot.last_hello > Some(earlier));
     }
 }

@@ -5,6 +5,8 @@
 //! with another scenario or session do not hear each other. Only hellos are without a digest, so that
 //! a process with another scenario is told by name.
 
+#[cfg(test)]
+use crate::arguments::Seconds;
 use crate::arguments::{NetworkArguments, Session};
 use crate::packet::{LONGEST_PACKET, Refusal, Refusals};
 use crate::repeats;
@@ -27,7 +29,7 @@ use zenoh::sample::{Locality, Sample, SampleKind};
 /// The most bytes of a hello: a name has at most a hundred.
 const LONGEST_HELLO: usize = 1 << 10;
 /// The most that waits to be read.
-const LONGEST_QUEUE: usize = 1 << 14;
+pub const LONGEST_QUEUE: usize = 1 << 14;
 
 /// How many batches wait for a receiver that is slow.
 const QUEUED_BATCHES: u32 = 16;
@@ -54,6 +56,15 @@ pub struct Hello {
     pub hears_all: bool,
     /// Whether it takes part in the mission, and waits for nobody any more.
     pub is_running: bool,
+}
+
+#[cfg(test)]
+impl Hello {
+    /// The hello of a process that waits for others and has heard nobody.
+    pub fn of(name: &str, scenario: &str, digest: &str) -> Self {
+        let [name, scenario, digest] = [name, scenario, digest].map(str::to_owned);
+        Hello { name, scenario, digest, started: 1, hears_all: false, is_running: false }
+    }
 }
 
 /// What arrives.
@@ -170,6 +181,22 @@ impl Transport {
             _subscribers: subscribers,
             _tokens: Vec::new(),
         })
+    }
+
+    /// A process to which these things come, and that is connected to nobody.
+    #[cfg(test)]
+    pub fn of(arrivals: Receiver<Arrival>) -> Self {
+        let arguments = NetworkArguments {
+            session: Session("test".into()),
+            listen: Vec::new(),
+            connect: Vec::new(),
+            multicast: false,
+            zenoh: None,
+            wait: Seconds(Duration::from_secs(1)),
+        };
+        let alone = Endpoints { listen: "tcp/127.0.0.1:0", connect: None };
+        let transport = Transport::open(&arguments, alone, "test", Interest::Packets);
+        Transport { arrivals, ..transport.unwrap() }
     }
 
     /// What a node sends with. Observers see that it is there.

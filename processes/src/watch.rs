@@ -7,6 +7,7 @@ use crate::arguments::{MEETING_POINT, OutputArguments, WatchArguments};
 use crate::packet::{Refusal, Refusals};
 use crate::process::{digest_of, name_of, scenario_in};
 use crate::report::{Report, Tally};
+use crate::strangers::Strangers;
 use crate::transport::{Arrival, Endpoints, Interest, Transport};
 use pleach::automaton::network::Robot;
 use pleach::automaton::network::observer::{RobotReport, complete_events};
@@ -22,6 +23,7 @@ use pleach::cli::run::{told, warn_of};
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use pleach::mission::{Completed, Gallery};
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -95,10 +97,11 @@ pub fn show(
     }
     let interrupt = Interrupt::listen()?;
     let mut progress = Progress::new(&planned.scenario, arguments.quiet);
-    let mut observatory = Observatory::new(&planned.scenario, transport, wait);
+    let digest = digest_of(&planned.scenario)?;
+    let mut observatory = Observatory::new(&planned.scenario, &digest, wait);
     let finished = job::watch(planned, &outputs, &mut progress, &interrupt, |watchers| {
         let gallery = Gallery::with_faults(&planned.scenario, planned.faults, watchers);
-        observatory.watch(gallery, &interrupt, meanwhile)
+        observatory.watch(transport, gallery, &interrupt, meanwhile)
     })?;
     let text = told(&finished, arguments.trace.as_deref());
     output::say(&(text + &observatory.counts()))?;
@@ -108,7 +111,6 @@ pub fn show(
 /// What is known from reports.
 struct Observatory<'a> {
     scenario: &'a ValidScenario,
-    transport: &'a Transport,
     wait: Duration,
     /// The control period that is shown next.
     step: usize,
@@ -122,7 +124,9 @@ struct Observatory<'a> {
     bodies: BTreeMap<NodeId, Point>,
     /// The processes that Zenoh sees.
     alive: BTreeSet<NodeId>,
-    tallies: BTreeMap<NodeId, Tally>,
+    strangers: Strangers<'a>,
+    /// What each process has counted, with the control period of its newest report.
+    tallies: BTreeMap<NodeId, (usize, Tally)>,
     refusals: Refusals,
     missed: u64,
     /// Whether the user has reported that the mission is over: then processes end.
@@ -130,7 +134,7 @@ struct Observatory<'a> {
 }
 
 impl<'a> Observatory<'a> {
-    fn new(scenario: &'a ValidScenario, transport: &'a Transport, wait: Duration) -> Self {
+    fn new(scenario: &'a ValidScenario, digest: &str, wait: Duration) -> Self {
         let site = scenario.site();
         let fresh = |(id, start): (usize, &pleach::automaton::network::scenario::RobotStart)| {
             let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(site));
@@ -138,7 +142,6 @@ impl<'a> Observatory<'a> {
         };
         Observatory {
             scenario,
-            transport,
             wait,
             step: 0,
             robots: scenario.robot.iter().enumerate().map(fresh).collect(),
@@ -146,6 +149,7 @@ impl<'a> Observatory<'a> {
             present: (0..scenario.robot.len() + scenario.access_point.len() + 1).collect(),
             bodies: BTreeMap::new(),
             alive: BTreeSet::new(),
+            strangers: Strangers::to(scenario, digest),
             tallies: BTreeMap::new(),
             refusals: Refusals::default(),
             missed: 0,
@@ -155,15 +159,17 @@ impl<'a> Observatory<'a> {
 
     fn watch(
         &mut self,
+        transport: &Transport,
         mut gallery: Gallery<'_, '_>,
         interrupt: &Interrupt,
         meanwhile: &mut Meanwhile<'_>,
     ) -> Result<Completed, Failure> {
         let mut last_news = Instant::now();
         let end = loop {
-            if let Some(arrival) = self.transport.next_within(GLANCE) {
+            if let Some(arrival) = transport.next_within(GLANCE)
+                && self.take(arrival)?
+            {
                 last_news = Instant::now();
-                self.take(arrival)?;
             }
             self.bodies.extend(meanwhile(self.step)?);
             if let Some(end) = self.show_what_is_complete(&mut gallery) {
@@ -173,19 +179,41 @@ impl<'a> Observatory<'a> {
                 break self.broken_off(format!("watching was ended by {signal}"));
             }
             if last_news.elapsed() > self.wait {
-                let seconds = self.wait.as_secs_f64();
                 if self.step == 0 {
-                    let session = "are the processes started, with the same scenario and --session, \
-                                   and does --connect name an endpoint at which one listens?";
-                    return Err(Failure::Usage(format!(
-                        "nobody reports for {seconds} s: {session}"
-                    )));
+                    return Err(Failure::Usage(self.nobody_reports()));
                 }
-                break self.broken_off(format!("nobody has reported for {seconds} s"));
+                break self.broken_off(self.silence());
             }
         };
-        self.transport.count_overflow(&mut self.refusals);
+        transport.count_overflow(&mut self.refusals);
         Ok(gallery.conclude(end)?)
+    }
+
+    fn nobody_reports(&self) -> String {
+        let seconds = self.wait.as_secs_f64();
+        match (self.strangers.count(), &self.scenario.name) {
+            (0, _) => format!(
+                "nobody reports for {seconds} s: are the processes started, with the same scenario and \
+                 --session, and does --connect name an endpoint at which one listens?"
+            ),
+            (others, name) => format!(
+                "nobody with the scenario {name:?} reports for {seconds} s; nodes of this session with \
+                 another one: {others}"
+            ),
+        }
+    }
+
+    /// What has kept the next control period from being shown for so long.
+    fn silence(&self) -> String {
+        let (seconds, step) = (self.wait.as_secs_f64(), self.step);
+        if self.is_passed_over() {
+            format!(
+                "no report on k = {step} has come within {seconds} s, and reports on later control \
+                 periods have: this observer was cut off for a while, and watching ends"
+            )
+        } else {
+            format!("nobody has reported for {seconds} s")
+        }
     }
 
     fn broken_off(&self, what: String) -> End {
@@ -195,50 +223,66 @@ impl<'a> Observatory<'a> {
 
     // ---- What arrives ------------------------------------------------------------------------
 
-    fn take(&mut self, arrival: Arrival) -> Result<(), Failure> {
+    /// Takes in what has arrived, and says whether it is news of the mission: a report, unless it only
+    /// comes after a period that nobody reports; or that a process waits for the mission to begin.
+    fn take(&mut self, arrival: Arrival) -> Result<bool, Failure> {
         let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
         let taken = match arrival {
-            Arrival::Report(from, _) | Arrival::Alive(from, _) if from >= count => {
+            Arrival::Report(from, _) | Arrival::Alive(from, _) | Arrival::Hello(from, _)
+                if from >= count =>
+            {
                 Err(Refusal::NoSuchNode)
             }
-            Arrival::Report(from, bytes) => {
-                Report::decode(&bytes, self.scenario).and_then(|report| self.enter(from, report))
-            }
+            Arrival::Report(from, bytes) => Report::decode(&bytes, self.scenario)
+                .and_then(|report| self.enter(from, report))
+                .map(|()| !self.is_passed_over()),
             Arrival::Alive(node, is_there) => {
                 self.note_life(node, is_there);
-                Ok(())
+                Ok(false)
+            }
+            Arrival::Hello(from, hello) => {
+                let is_stranger = self.strangers.recognise(from, &hello);
+                Ok(!is_stranger && !hello.is_running && self.step == 0)
             }
             Arrival::Refused(refusal) => Err(refusal),
-            Arrival::Hello(..) | Arrival::Packet(..) => Ok(()),
+            Arrival::Packet(..) => Ok(false),
         };
-        if let Err(refusal) = taken {
-            self.refusals.count(refusal);
-        }
-        if self.step == 0 && self.is_late() {
+        if self.step == 0 && self.is_late(&taken) {
             return Err(Failure::Usage(
                 "the mission goes on already: start `pleach watch` before its last process".into(),
             ));
         }
-        Ok(())
+        Ok(taken.unwrap_or_else(|refusal| {
+            self.refusals.count(refusal);
+            false
+        }))
     }
 
     fn enter(&mut self, from: NodeId, report: Report) -> Result<(), Refusal> {
         if (from < self.robots.len()) != report.robot.is_some() {
             return Err(Refusal::Malformed);
         }
-        self.tallies.insert(from, report.tally);
-        self.has_ended |= report.end.is_some();
-        if report.step < self.step {
-            self.missed += 1;
-            return Ok(());
+        let (step, tally, ends) = (report.step, report.tally, report.end.is_some());
+        match step.checked_sub(self.step) {
+            None => self.missed += 1,
+            Some(ahead) if ahead > MOST_AHEAD => return Err(Refusal::TooFarAhead),
+            Some(_) => match self.reports.entry(step).or_default().entry(from) {
+                Entry::Occupied(_) => return Err(Refusal::Repeated),
+                Entry::Vacant(place) => {
+                    place.insert(report);
+                }
+            },
         }
-        if report.step > self.step + MOST_AHEAD {
-            return Err(Refusal::TooFarAhead);
-        }
-        let of_step = self.reports.entry(report.step).or_default();
-        match of_step.insert(from, report) {
-            None => Ok(()),
-            Some(_) => Err(Refusal::Repeated),
+        self.note_tally(from, step, tally);
+        self.has_ended |= ends;
+        Ok(())
+    }
+
+    /// A process has counted what its newest report says.
+    fn note_tally(&mut self, from: NodeId, step: usize, tally: Tally) {
+        let newest = self.tallies.entry(from).or_insert((step, tally));
+        if newest.0 < step {
+            *newest = (step, tally);
         }
     }
 
@@ -254,17 +298,27 @@ impl<'a> Observatory<'a> {
 
     // ---- What is shown -----------------------------------------------------------------------
 
-    /// Whether this observer has missed the beginning.
-    fn is_late(&self) -> bool {
-        let is_first = |step: usize| self.reports.contains_key(&step);
-        !is_first(0) && (PERIODS_APART..=MOST_AHEAD).any(is_first)
+    /// Whether this observer has missed the beginning, as it sees from what it has taken in last and
+    /// before.
+    fn is_late(&self, taken: &Result<bool, Refusal>) -> bool {
+        let is_far_on = *taken == Err(Refusal::TooFarAhead);
+        !self.reports.contains_key(&0) && (is_far_on || self.has_later_reports())
+    }
+
+    /// Whether a report has come from so late a period that of the one shown next no more is expected.
+    fn has_later_reports(&self) -> bool {
+        self.reports.range(self.step + PERIODS_APART..).next().is_some()
+    }
+
+    /// Whether the reports of the next control period should be there, and not one is. No snapshot is made
+    /// of nothing: it would say that all robots stood still, and they have moved.
+    fn is_passed_over(&self) -> bool {
+        !self.reports.contains_key(&self.step) && self.has_later_reports()
     }
 
     /// Whether all reports of a control period have come that will.
     fn is_complete(&self, reports: &BTreeMap<NodeId, Report>) -> bool {
-        let later = self.step + PERIODS_APART;
-        self.present.iter().all(|node| reports.contains_key(node))
-            || self.reports.range(later..).next().is_some()
+        self.present.iter().all(|node| reports.contains_key(node)) || self.has_later_reports()
     }
 
     /// Shows what is complete, and says how the mission ends if it does.
@@ -323,7 +377,8 @@ impl<'a> Observatory<'a> {
 
     /// What the processes have counted, as lines of the summary.
     fn counts(&self) -> String {
-        let sum = |count: fn(&Tally) -> u64| self.tallies.values().map(count).sum::<u64>();
+        let sum =
+            |count: fn(&Tally) -> u64| self.tallies.values().map(|(_, it)| count(it)).sum::<u64>();
         let (refused, late) = (sum(|it| it.refused), sum(|it| it.late));
         let (lost, given_up) = (sum(|it| it.lost), sum(|it| it.given_up));
         let observer = if self.refusals.total() > 0 || self.missed > 0 {
@@ -340,10 +395,10 @@ impl<'a> Observatory<'a> {
 
     /// How much each robot has sent in a control period, as a line of the summary.
     fn weight(&self) -> String {
-        let robots = || self.tallies.range(..self.robots.len()).map(|(_, tally)| tally);
+        let robots = || self.tallies.range(..self.robots.len()).map(|(_, (_, tally))| tally);
         let shares = (robots().count() * self.step).max(1) as f64;
         let each = |count: fn(&Tally) -> u64| robots().map(count).sum::<u64>() as f64 / shares;
-        let unknown: u64 = self.tallies.values().map(|tally| tally.unknown).sum();
+        let unknown: u64 = self.tallies.values().map(|(_, tally)| tally.unknown).sum();
         format!(
             "  each robot sends    {:.1} messages in {:.1} packets of {:.0} bytes a control period; {unknown} \
              digests unknown\n",
@@ -351,5 +406,126 @@ impl<'a> Observatory<'a> {
             each(|tally| tally.packets),
             each(|tally| tally.bytes) / each(|tally| tally.packets).max(1.0),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::Hello;
+    use pleach::mission::Watcher;
+    use pleach::scenario_file;
+    use std::sync::mpsc::sync_channel;
+    use std::thread;
+
+    fn scenario() -> ValidScenario {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/too-few.toml");
+        scenario_file::read(&path).unwrap()
+    }
+
+    fn observatory(scenario: &ValidScenario) -> Observatory<'_> {
+        Observatory::new(scenario, "abc", Duration::from_millis(200))
+    }
+
+    /// The first report of node `from`, as if it were of control period `step`.
+    fn report(observatory: &Observatory<'_>, from: NodeId, step: usize) -> Report {
+        let robot = observatory.robots.get(from).cloned();
+        Report { step, robot, events: Vec::new(), end: None, tally: Tally::default() }
+    }
+
+    #[test]
+    fn of_two_reports_on_one_control_period_the_first_holds() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let first = report(&observatory, 2, 0);
+        let end = Some(End::new(Outcome::Serviced, "it says so".into(), None).into());
+        let tally = Tally { late: 9, ..Tally::default() };
+        let second = Report { end, tally, ..first.clone() };
+        assert_eq!(observatory.enter(2, first.clone()), Ok(()));
+        assert_eq!(observatory.enter(2, second.clone()), Err(Refusal::Repeated));
+        assert_eq!(observatory.reports[&0][&2], first);
+        assert_eq!(observatory.tallies[&2], (0, first.tally));
+        assert!(!observatory.has_ended);
+        let too_far = Report { step: MOST_AHEAD + 1, ..second };
+        assert_eq!(observatory.enter(2, too_far), Err(Refusal::TooFarAhead));
+        assert_eq!(observatory.tallies[&2], (0, first.tally));
+        assert!(!observatory.has_ended);
+    }
+
+    #[test]
+    fn what_a_process_has_counted_is_in_its_newest_report() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let late = |late| Tally { late, ..Tally::default() };
+        for (step, count) in [(1, 5), (0, 3), (2, 7)] {
+            let report = Report { tally: late(count), ..report(&observatory, 2, step) };
+            assert_eq!(observatory.enter(2, report), Ok(()));
+            assert_eq!(observatory.tallies[&2].1, late(count.max(5)));
+        }
+    }
+
+    #[test]
+    fn only_processes_of_the_same_scenario_are_news_until_the_mission_begins() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let waiting = Hello::of("robot 2", "too-few", "abc");
+        let running = Hello { is_running: true, ..waiting.clone() };
+        let stranger = Hello::of("robot 2", "study-1", "abd");
+        let mut is_news =
+            |node, hello: &Hello| observatory.take(Arrival::Hello(node, hello.clone())).unwrap();
+        assert!(is_news(2, &waiting));
+        assert!(!is_news(2, &running), "who runs reports, or is not heard of");
+        assert!(!is_news(99, &waiting), "there is no such node");
+        assert!(!is_news(2, &stranger));
+        assert_eq!(observatory.strangers.count(), 1);
+        let said = observatory.nobody_reports();
+        assert!(said.contains("nobody with the scenario \"too-few\" reports"), "{said}");
+        observatory.step = 1;
+        assert!(!observatory.take(Arrival::Hello(2, waiting)).unwrap(), "it waits to join");
+    }
+
+    #[test]
+    fn who_comes_late_is_told_so_however_late() {
+        let scenario = scenario();
+        for (step, is_late) in [(1, false), (2, true), (MOST_AHEAD + 7, true)] {
+            let mut observatory = observatory(&scenario);
+            let report = serde_json::to_vec(&report(&observatory, 2, step)).unwrap();
+            let taken = observatory.take(Arrival::Report(2, report));
+            assert_eq!(taken.is_err(), is_late, "k = {step}: {taken:?}");
+        }
+    }
+
+    #[test]
+    fn watching_ends_where_all_reports_on_a_control_period_are_lost() {
+        let scenario = scenario();
+        let mut observatory = observatory(&scenario);
+        let nodes = scenario.robot.len() + scenario.access_point.len() + 1;
+        let of = |step| (0..nodes).map(move |node| (node, step));
+        let reports: Vec<Arrival> = of(0)
+            .chain((2..100).flat_map(of))
+            .map(|(node, step)| {
+                let report = report(&observatory, node, step);
+                Arrival::Report(node, serde_json::to_vec(&report).unwrap())
+            })
+            .collect();
+        // They come for five seconds, much longer than the observer waits.
+        let (sender, arrivals) = sync_channel(nodes);
+        let mission = thread::spawn(move || {
+            reports.into_iter().try_for_each(|report| {
+                thread::sleep(Duration::from_millis(8));
+                sender.send(report)
+            })
+        });
+        let transport = Transport::of(arrivals);
+        let mut watchers: [&mut dyn Watcher; 0] = [];
+        let faults = Faults { messages: true, nodes: true };
+        let gallery = Gallery::with_faults(&scenario, faults, &mut watchers);
+        let interrupt = Interrupt::listen().unwrap();
+        let mut nowhere = |_| Ok(Vec::new());
+        let completed = observatory.watch(&transport, gallery, &interrupt, &mut nowhere).unwrap();
+        assert!(!mission.is_finished(), "it waits for no other report");
+        let End { outcome, reason, .. } = completed.end;
+        assert_eq!(outcome, Outcome::Interrupted, "{reason}");
+        assert!(reason.contains("no report on k = 1") && reason.ends_with("k = 0"), "{reason}");
     }
 }

@@ -289,6 +289,12 @@ fn another_scenario_is_told_by_name() {
         &refused(robot),
         &["access point 0", "\"too-few\"", "study-1", "same file", "with another one"],
     );
+    let mut watch = session.command("watch");
+    watch.args(["--wait", "2", "--no-figures"]);
+    assert_says(
+        &refused(watch),
+        &["access point 0", "\"too-few\"", "same file", "nobody with the scenario \"study-1\""],
+    );
 }
 
 #[test]
