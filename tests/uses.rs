@@ -260,6 +260,18 @@ pub const USES: &[Use] = &[
         "storm::network(fleet.scenario(), &storm.of_fleet(fleet))",
     ),
     (
+        "met",
+        "verify/src/temporal/signal.rs",
+        "verify/src/temporal/sliding.rs",
+        "self.signal.met(self.left, self.reach.start, now)",
+    ),
+    (
+        "traps",
+        "exploration/src/liveness.rs",
+        "exploration/src/network/campaign.rs",
+        "exploration.traps(ended, Action::is_optional,",
+    ),
+    (
         "judged_faults",
         "verify/src/network/judge/referee.rs",
         "src/cli/judge.rs",
