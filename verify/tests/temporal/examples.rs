@@ -93,6 +93,7 @@ fn jumps_that_are_a_rounding_apart_do_not_meet() {
         let both = eventually(within(0.0, 2.0).unwrap(), x & high("y"));
         let judgement = both.judge(&samples).unwrap();
         assert_eq!(judgement.status, Status::Violated, "{judgement}");
+        assert!(judgement.robustness.upper <= -0.5, "{judgement}");
     }
 }
 
