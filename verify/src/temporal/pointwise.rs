@@ -43,11 +43,15 @@ pub(super) fn lowest(span: Span, flows: &[Flow]) -> Vec<(Span, Flow)> {
     bounds.push(span.1);
     let piece = |bound: &[f64]| {
         let part = (bound[0], bound[1]);
-        // Flows do not cross inside of a part: the sum of its ends tells which is lower.
+        // Flows do not cross inside of a part: the sum of its ends tells which is lower; unless they cross between
+        // two adjacent times, where its limits are those of different flows.
         let flows = flows.iter().map(|flow| flow.part(span, part));
+        let limits =
+            |lowest: [f64; 2], flow: Flow| [lowest[0].min(flow.start), lowest[1].min(flow.end)];
+        let [start, end] = flows.clone().fold([f64::INFINITY; 2], limits);
         let lowest =
             flows.min_by(|one, other| (one.start + one.end).total_cmp(&(other.start + other.end)));
-        lowest.map(|flow| (part, flow))
+        lowest.map(|flow| (part, Flow { start, end, ..flow }))
     };
     bounds.windows(2).filter_map(piece).collect()
 }
