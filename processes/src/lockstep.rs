@@ -108,6 +108,11 @@ impl Lockstep {
         self.expected.iter().copied().filter(is_missing)
     }
 
+    /// Whether all others are given up: nothing tells then how fast to go on.
+    pub fn is_alone(&self) -> bool {
+        self.expected.is_empty() && !self.newest.is_empty()
+    }
+
     /// Whether others have gone on without this process: one of them has sent in two later rounds.
     pub fn is_overtaken(&self) -> bool {
         let later = |packets: &BTreeMap<Stamp, Packet>| {
@@ -222,11 +227,25 @@ mod tests {
         assert_eq!(lockstep.give_up(), [2]);
         lockstep.go_on_to(at(0, 2, 0));
         assert_eq!(missing(&lockstep), [1]);
+        assert!(!lockstep.is_alone());
         // Too late for this period, and in time for the next one.
         lockstep.receive(2, packet(at(0, 1, 0))).unwrap();
         assert_eq!((missing(&lockstep), lockstep.late()), (vec![1], 1));
         lockstep.go_on_to(at(1, 1, 0));
         assert_eq!(missing(&lockstep), [1, 2]);
+    }
+
+    #[test]
+    fn a_process_is_alone_once_it_has_given_all_others_up() {
+        let mut lockstep = three();
+        assert!(!lockstep.is_alone(), "it waits for others");
+        lockstep.receive(1, packet(at(0, 1, 0))).unwrap();
+        lockstep.go_on_to(at(0, 2, 0));
+        assert_eq!(lockstep.give_up(), [1, 2]);
+        assert!(lockstep.is_alone());
+        lockstep.receive(1, packet(at(0, 2, 0))).unwrap();
+        assert!(!lockstep.is_alone());
+        assert!(!Lockstep::new([0, 1]).is_alone(), "there are no others");
     }
 
     #[test]

@@ -450,12 +450,16 @@ impl<'a> Process<'a> {
     /// process goes on.
     fn wait_for_packets(&mut self, stamp: Stamp) -> Result<bool, Failure> {
         let deadline = Instant::now() + self.options.limit.0;
-        while self.is_round_open() && self.interrupt.signal().is_none() {
+        // One that is alone takes as long as it would wait for others: they may come back, and could not follow.
+        while (self.is_round_open() || self.lockstep.is_alone())
+            && self.interrupt.signal().is_none()
+        {
             self.say_hello();
             let rest = deadline.saturating_duration_since(Instant::now());
             if rest.is_zero() {
                 self.read_what_has_come()?;
                 self.go_on_without_the_missing(stamp);
+                break;
             } else if let Some(arrival) = self.parts.transport.next_within(rest.min(GLANCE)) {
                 self.take(arrival)?;
             }
