@@ -51,6 +51,58 @@ fn a_map_of_the_map_server_is_traced_without_a_wall_inside() {
     assert!(simple * 2 < exact, "{simple} of {exact} corners");
 }
 
+/// How many cells are free of a map of the map server, of whose 12 by 12 pixels those in the right half are as given
+/// and the others white.
+fn free_cells(name: &str, image_header: &str, pixel: &[u8], keys: &str) -> Result<String, String> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [image, map] = ["pnm", "yaml"].map(|ending| folder.join(name).with_extension(ending));
+    let white = vec![255; pixel.len()];
+    let row = [white.repeat(6), pixel.repeat(6)].concat();
+    std::fs::write(&image, [image_header.as_bytes(), &row.repeat(12)].concat()).unwrap();
+    std::fs::write(&map, format!("image: {name}.pnm\nresolution: 1\n{keys}")).unwrap();
+    let reading = Reading { tolerance: Some(0.0), ..Reading::default() };
+    let plan = import::read(&map, &reading).map_err(|error| error.to_string())?;
+    Ok(plan.notes[1].clone())
+}
+
+const GREY: &str = "P5 12 12 255\n";
+const COLOURS: &str = "P6 12 12 255\n";
+const TRANSPARENT: &str =
+    "P7\nWIDTH 12\nHEIGHT 12\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n";
+
+/// Channels are averaged, alpha among them in the mode trinary; what is occupied is decided before what is free.
+#[test]
+fn pixels_are_free_where_the_map_server_says_so() {
+    let [all, half] = ["144 free cells of side 1", "72 free cells of side 1"];
+    for (image_header, pixel, keys, expected) in [
+        (GREY, &[206][..], "", all), // an occupancy of 0.192
+        (GREY, &[205], "", half),    // of 0.196078
+        (GREY, &[217], "occupied_thresh: 0.1\n", half),
+        (GREY, &[217], "free_thresh: 0.1\n", half),
+        (COLOURS, &[255, 255, 110], "", all),
+        (COLOURS, &[255, 255, 0], "", half),
+        (TRANSPARENT, &[255, 255, 255, 0], "", half),
+        (TRANSPARENT, &[255, 255, 255, 60], "", all),
+        (TRANSPARENT, &[255, 255, 255, 254], "mode: scale\n", half),
+    ] {
+        let free = free_cells("pixels", image_header, pixel, keys);
+        assert_eq!(free.as_deref(), Ok(expected), "{pixel:?} {keys}");
+    }
+}
+
+#[test]
+fn thresholds_that_are_no_occupancy_are_refused() {
+    for (keys, said) in [
+        ("free_thresh: 25\n", "free_thresh is 25: it must be from 0 to 1"),
+        ("occupied_thresh: -0.65\n", "occupied_thresh is -0.65: it must be from 0 to 1"),
+        ("mode: raw\n", "mode: raw maps are not read; trinary and scale are"),
+        ("mode: grey\n", "mode: grey maps are not read; trinary and scale are"),
+    ] {
+        let error = free_cells("thresholds", GREY, &[0], keys).unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
+}
+
 #[test]
 fn an_imported_flat_is_serviced() {
     let plan = plan("flat.yaml", &Reading::default());

@@ -1,66 +1,139 @@
 //! Maps of the ROS map server: a YAML file that names an image.
+//!
+//! A pixel becomes a cell as in the map server, in its mode `trinary` or `scale`: its channels are
+//! averaged, and how dark the average is, from 0 for white to 1 for black, is the occupancy of the
+//! cell (`negate` turns this round). Above `occupied_thresh` the cell is occupied, or else below
+//! `free_thresh` free, or else unknown. Only free cells are floor.
 
 use super::ImportError;
 use super::grid::Grid;
-use image::ImageReader;
+use image::{DynamicImage, GenericImageView, ImageReader, Rgba};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Reads the map that the YAML text at `path` describes.
-///
-/// A pixel is free if it is lighter than `free_thresh` demands; occupied and unknown ones are
-/// walls.
 pub(super) fn read(path: &Path, text: &str) -> Result<Grid, ImportError> {
     let malformed = |problem| ImportError::Malformed { path: path.into(), problem };
-    let keys = keys(text);
-    let number = |key: &str, default: Option<f64>| match (keys.get(key), default) {
-        (Some(text), _) => text
-            .parse()
-            .ok()
-            .filter(|number: &f64| number.is_finite())
-            .ok_or_else(|| malformed(format!("{key}: {text:?} is not a number"))),
-        (None, Some(default)) => Ok(default),
-        (None, None) => Err(malformed(format!("{key} is missing"))),
-    };
-    let image = keys.get("image").ok_or_else(|| malformed("image is missing".into()))?;
-    let cell = number("resolution", None)?;
+    let keys = Keys::of(text);
+    let image = keys.text("image").map_err(malformed)?;
+    let cell = keys.number("resolution", None).map_err(malformed)?;
     if cell <= 0.0 {
         return Err(malformed(format!("resolution: {cell} is not positive")));
     }
-    let free_below = number("free_thresh", Some(0.196))?;
-    let is_negated = number("negate", Some(0.0))? != 0.0;
-    if keys.get("mode").is_some_and(|mode| mode == "raw") {
-        return Err(malformed("mode: raw maps are not read; trinary and scale are".into()));
-    }
-    let origin = keys.get("origin").map_or(Ok(vec![0.0; 3]), |text| {
-        let numbers: Result<Vec<f64>, _> =
-            text.split(',').map(|part| part.trim().parse()).collect();
-        numbers.ok().filter(|numbers| numbers.len() == 3).ok_or_else(|| {
-            malformed(format!("origin: {text:?} is no list of three numbers [x, y, yaw]"))
-        })
-    })?;
+    let rule = Rule::of(&keys).map_err(malformed)?;
+    let origin = keys.origin().map_err(malformed)?;
 
-    let file = path.parent().unwrap_or_else(|| Path::new("")).join(image);
-    let unreadable = |source| ImportError::Unreadable { path: file.clone(), source };
-    let pixels = ImageReader::open(&file)
-        .map_err(unreadable)?
-        .with_guessed_format()
-        .map_err(unreadable)?
-        .decode()
-        .map_err(|error| ImportError::Malformed {
-            path: file.clone(),
-            problem: format!("no image that can be read: {error}"),
-        })?
-        .to_luma8();
-    let occupied = |shade: u8| {
-        let light = f64::from(shade) / 255.0;
-        if is_negated { light } else { 1.0 - light }
-    };
-    let free: Vec<bool> = pixels.pixels().map(|pixel| occupied(pixel.0[0]) < free_below).collect();
-    let grid = Grid::new(pixels.width() as usize, pixels.height() as usize, free);
+    let picture = picture(&path.parent().unwrap_or_else(|| Path::new("")).join(image))?;
+    let free = rule.free_pixels(&picture);
+    let grid = Grid::new(picture.width() as usize, picture.height() as usize, free);
     let mut grid = grid.map_err(malformed)?;
     (grid.cell, grid.origin, grid.yaw) = (cell, [origin[0], origin[1]], origin[2]);
     Ok(grid)
+}
+
+fn picture(file: &Path) -> Result<DynamicImage, ImportError> {
+    let unreadable = |source| ImportError::Unreadable { path: file.into(), source };
+    let reader = ImageReader::open(file).and_then(ImageReader::with_guessed_format);
+    reader.map_err(unreadable)?.decode().map_err(|error| ImportError::Malformed {
+        path: file.into(),
+        problem: format!("no image that can be read: {error}"),
+    })
+}
+
+/// What makes a pixel a free cell.
+struct Rule {
+    occupied_above: f64,
+    free_below: f64,
+    is_negated: bool,
+    alpha: Alpha,
+}
+
+/// What the transparency of a pixel means.
+enum Alpha {
+    /// It is averaged with the colours: mode `trinary`.
+    IsAChannel,
+    /// A cell of which anything shines through is unknown: mode `scale`.
+    HidesTheCell,
+}
+
+impl Rule {
+    fn of(keys: &Keys) -> Result<Self, String> {
+        Ok(Self {
+            occupied_above: keys.threshold("occupied_thresh", 0.65)?,
+            free_below: keys.threshold("free_thresh", 0.196)?,
+            is_negated: keys.number("negate", Some(0.0))? != 0.0,
+            alpha: match keys.text("mode").unwrap_or("trinary") {
+                "trinary" => Alpha::IsAChannel,
+                "scale" => Alpha::HidesTheCell,
+                mode => {
+                    return Err(format!("mode: {mode} maps are not read; trinary and scale are"));
+                }
+            },
+        })
+    }
+
+    /// Whether each pixel is a free cell, in rows from the top.
+    fn free_pixels(&self, picture: &DynamicImage) -> Vec<bool> {
+        let has_alpha = picture.color().has_alpha();
+        picture.pixels().map(|(_, _, pixel)| self.is_free(pixel, has_alpha)).collect()
+    }
+
+    fn is_free(&self, Rgba([red, green, blue, alpha]): Rgba<u8>, has_alpha: bool) -> bool {
+        let shade = match self.alpha {
+            Alpha::IsAChannel if has_alpha => mean([red, green, blue, alpha]),
+            Alpha::HidesTheCell if alpha < u8::MAX => return false,
+            _ => mean([red, green, blue]),
+        };
+        let occupancy = if self.is_negated { shade / 255.0 } else { (255.0 - shade) / 255.0 };
+        occupancy <= self.occupied_above && occupancy < self.free_below
+    }
+}
+
+fn mean<const N: usize>(channels: [u8; N]) -> f64 {
+    channels.map(f64::from).iter().sum::<f64>() / N as f64
+}
+
+/// The keys of a map with their values as text.
+struct Keys(BTreeMap<String, String>);
+
+impl Keys {
+    fn of(text: &str) -> Self {
+        Self(keys(text))
+    }
+
+    fn text(&self, key: &str) -> Result<&str, String> {
+        self.0.get(key).map(String::as_str).ok_or_else(|| format!("{key} is missing"))
+    }
+
+    fn number(&self, key: &str, default: Option<f64>) -> Result<f64, String> {
+        match (self.text(key), default) {
+            (Ok(text), _) => (text.parse().ok())
+                .filter(|number: &f64| number.is_finite())
+                .ok_or_else(|| format!("{key}: {text:?} is not a number")),
+            (Err(_), Some(default)) => Ok(default),
+            (Err(missing), None) => Err(missing),
+        }
+    }
+
+    fn threshold(&self, key: &str, default: f64) -> Result<f64, String> {
+        let threshold = self.number(key, Some(default))?;
+        match (0.0..=1.0).contains(&threshold) {
+            true => Ok(threshold),
+            false => Err(format!(
+                "{key} is {threshold}: it must be from 0 to 1, as cells are occupied from 0 (white) \
+                 to 1 (black)"
+            )),
+        }
+    }
+
+    /// Where the lower left corner lies, and by how much the map is turned; 0 by default.
+    fn origin(&self) -> Result<[f64; 3], String> {
+        let Ok(text) = self.text("origin") else { return Ok([0.0; 3]) };
+        let numbers: Result<Vec<f64>, _> =
+            text.split(',').map(|part| part.trim().parse()).collect();
+        (numbers.ok().and_then(|numbers| numbers.try_into().ok()))
+            .ok_or_else(|| format!("origin: {text:?} is no list of three numbers [x, y, yaw]"))
+    }
 }
 
 /// The keys of a flat YAML file; a list is given as its elements with commas between them.
