@@ -105,21 +105,38 @@ fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
+/// The ending of the name of a map, which says of which kind it is.
+fn ending_of(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+fn text_of(path: &Path) -> Result<String, ImportError> {
+    fs::read_to_string(path).map_err(|source| ImportError::Unreadable { path: path.into(), source })
+}
+
+/// The files that a map consists of: itself and, where it names one, its image.
+///
+/// # Errors
+/// When a map that may name an image cannot be read or names none.
+pub fn files(path: &Path) -> Result<Vec<PathBuf>, ImportError> {
+    let mut files = vec![path.to_owned()];
+    if matches!(ending_of(path).as_str(), "yaml" | "yml") {
+        files.push(ros::image_of(path, &text_of(path)?)?);
+    }
+    Ok(files)
+}
+
 /// Reads a map; the ending of its name says of which kind it is.
 ///
 /// # Errors
 /// When the file cannot be read, is of an unknown kind or malformed, or has no floor.
 pub fn read(path: &Path, reading: &Reading) -> Result<Plan, ImportError> {
     let malformed = |problem| ImportError::Malformed { path: path.into(), problem };
-    let text = || {
-        fs::read_to_string(path)
-            .map_err(|source| ImportError::Unreadable { path: path.into(), source })
-    };
+    let text = || text_of(path);
     if !(reading.scale.is_finite() && reading.scale > 0.0) {
         return Err(malformed(format!("the scale is {}: it must be positive", reading.scale)));
     }
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let plan = match ending.to_ascii_lowercase().as_str() {
+    let plan = match ending_of(path).as_str() {
         "yaml" | "yml" => ros::read(path, &text()?)?.trace(reading),
         "map" => moving_ai::read(&text()?).map_err(malformed)?.trace(reading),
         "geojson" | "json" => geojson::read(&text()?, reading),

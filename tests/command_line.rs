@@ -342,6 +342,23 @@ fn a_map_becomes_the_scenario_that_is_asked_for() {
     assert_eq!(placed.task[0].position, task);
 }
 
+#[test]
+fn a_scenario_takes_the_place_of_no_file_of_its_map() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("places");
+    std::fs::create_dir_all(&folder).unwrap();
+    let [map, image] = ["flat.yaml", "flat.pgm"].map(|name| {
+        std::fs::copy(Path::new("tests/maps").join(name), folder.join(name)).unwrap();
+        folder.join(name).to_str().unwrap().to_owned()
+    });
+    for file in [&map, &image] {
+        let before = std::fs::read(file).unwrap();
+        let output = pleach(&["import", &map, "-o", file]);
+        assert_eq!(output.status.code(), Some(2), "{file}");
+        assert!(said(&output.stderr).contains("choose another path"), "{output:?}");
+        assert_eq!(std::fs::read(file).unwrap(), before, "{file}");
+    }
+}
+
 // ---- Checks ------------------------------------------------------------------------------------
 
 #[test]

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Reads a map and writes a scenario.
 pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
-    output::check_places([&arguments.map], &arguments.output)?;
+    output::check_places(&import::files(&arguments.map)?, &arguments.output)?;
     let reading = Reading {
         tolerance: arguments.tolerance,
         scale: arguments.scale,

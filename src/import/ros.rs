@@ -9,13 +9,12 @@ use super::ImportError;
 use super::grid::Grid;
 use image::{DynamicImage, GenericImageView, ImageReader, Rgba};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads the map that the YAML text at `path` describes.
 pub(super) fn read(path: &Path, text: &str) -> Result<Grid, ImportError> {
     let malformed = |problem| ImportError::Malformed { path: path.into(), problem };
     let keys = Keys::of(text);
-    let image = keys.text("image").map_err(malformed)?;
     let cell = keys.number("resolution", None).map_err(malformed)?;
     if cell <= 0.0 {
         return Err(malformed(format!("resolution: {cell} is not positive")));
@@ -23,12 +22,20 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Grid, ImportError> {
     let rule = Rule::of(&keys).map_err(malformed)?;
     let origin = keys.origin().map_err(malformed)?;
 
-    let picture = picture(&path.parent().unwrap_or_else(|| Path::new("")).join(image))?;
+    let picture = picture(&image_of(path, text)?)?;
     let free = rule.free_pixels(&picture);
     let grid = Grid::new(picture.width() as usize, picture.height() as usize, free);
     let mut grid = grid.map_err(malformed)?;
     (grid.cell, grid.origin, grid.yaw) = (cell, [origin[0], origin[1]], origin[2]);
     Ok(grid)
+}
+
+/// The image that the YAML text at `path` names.
+pub(super) fn image_of(path: &Path, text: &str) -> Result<PathBuf, ImportError> {
+    let keys = Keys::of(text);
+    let image = keys.text("image");
+    let image = image.map_err(|problem| ImportError::Malformed { path: path.into(), problem })?;
+    Ok(path.parent().unwrap_or_else(|| Path::new("")).join(image))
 }
 
 fn picture(file: &Path) -> Result<DynamicImage, ImportError> {
