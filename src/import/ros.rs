@@ -143,23 +143,78 @@ impl Keys {
     }
 }
 
-/// The keys of a flat YAML file; a list is given as its elements with commas between them.
+/// The keys of a YAML file whose values are texts, numbers and lists of numbers; a list is given as its elements with
+/// commas between them. Keys stand one a line or together in braces, and lists in brackets or one element a line.
 fn keys(text: &str) -> BTreeMap<String, String> {
+    let lines: Vec<&str> = text.lines().map(without_comment).collect();
+    let text = lines.join("\n");
     let mut keys: BTreeMap<String, String> = BTreeMap::new();
     let mut last = String::new();
-    for line in text.lines() {
-        let line = line.split(" #").next().unwrap_or_default();
-        let bare = |text: &str| text.trim().trim_matches(['[', ']', '"', '\'']).trim().to_owned();
-        if let Some(element) = line.trim_start().strip_prefix("- ") {
+    for entry in parts(&text, '\n').into_iter().flat_map(entries) {
+        if let Some(element) = entry.trim_start().strip_prefix("- ") {
             let list = keys.entry(last.clone()).or_default();
             let separator = if list.is_empty() { "" } else { "," };
             *list = format!("{list}{separator}{}", bare(element));
-        } else if let Some((key, value)) = line.split_once(':') {
-            last = key.trim().to_owned();
-            keys.insert(last.clone(), bare(value));
+        } else if let Some(colon) = find(entry, |depth, _, letter| depth == 0 && letter == ':') {
+            last = bare(&entry[..colon]).to_owned();
+            keys.insert(last.clone(), bare(&entry[colon + 1..]).to_owned());
         }
     }
     keys
+}
+
+/// What a line says, each key by itself.
+fn entries(line: &str) -> Vec<&str> {
+    match inside(line.trim(), ['{', '}']) {
+        Some(entries) => parts(entries, ','),
+        None => vec![line],
+    }
+}
+
+/// A value without quotes, a list without brackets.
+fn bare(text: &str) -> &str {
+    let text = text.trim();
+    let marks = [['"', '"'], ['\'', '\''], ['[', ']']];
+    marks.into_iter().find_map(|marks| inside(text, marks)).unwrap_or(text).trim()
+}
+
+fn inside(text: &str, [open, close]: [char; 2]) -> Option<&str> {
+    text.strip_prefix(open)?.strip_suffix(close)
+}
+
+fn without_comment(line: &str) -> &str {
+    let start = find(line, |_, before, letter| letter == '#' && before.is_whitespace());
+    &line[..start.unwrap_or(line.len())]
+}
+
+/// The parts of a text between separators; those in quotes or brackets separate nothing.
+fn parts(text: &str, separator: char) -> Vec<&str> {
+    let (mut parts, mut rest) = (Vec::new(), text);
+    while let Some(end) = find(rest, |depth, _, letter| depth == 0 && letter == separator) {
+        parts.push(&rest[..end]);
+        rest = &rest[end + separator.len_utf8()..];
+    }
+    parts.push(rest);
+    parts
+}
+
+/// Where the first character outside of quotes stands that is wanted; this is asked with the depth in brackets and the
+/// character before. Quotes and brackets open where a key or a value starts; within a word they are letters.
+fn find(text: &str, is_wanted: impl Fn(usize, char, char) -> bool) -> Option<usize> {
+    let (mut quote, mut depth, mut before) = (None, 0_usize, '\n');
+    for (at, letter) in text.char_indices() {
+        let starts = before.is_whitespace() || ",:[{".contains(before);
+        match (quote, letter) {
+            (Some(open), _) => quote = quote.filter(|_| letter != open),
+            (None, _) if is_wanted(depth, before, letter) => return Some(at),
+            (None, '"' | '\'') if starts => quote = Some(letter),
+            (None, '[' | '{') if starts => depth += 1,
+            (None, ']' | '}') => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        before = letter;
+    }
+    None
 }
 
 #[cfg(test)]
@@ -173,5 +228,21 @@ mod tests {
         assert_eq!(keys["image"], "a.pgm");
         assert_eq!(keys["origin"], "-1, 2.5, 0");
         assert_eq!(keys["other"], "1,2");
+    }
+
+    #[test]
+    fn keys_stand_in_lines_or_in_braces_with_quotes_or_without() {
+        for text in [
+            "---\n\"image\": 'a, b #1.pgm'\t# the picture: of a flat\n'origin':\n- -1\n- 2.5 # up\n- 0\n",
+            "{image: \"a, b #1.pgm\", origin: [-1,2.5,0]}",
+            "{\"image\":\"a, b #1.pgm\", # the picture\n \"origin\":[-1,\n2.5,0]\n}\n",
+            "image: a, b #1.pgm\r\norigin: [-1, 2.5,\r\n 0]\r\n",
+        ] {
+            let keys = Keys::of(text);
+            let image = if text.starts_with("image") { "a, b" } else { "a, b #1.pgm" };
+            assert_eq!(keys.text("image"), Ok(image), "{text}");
+            assert_eq!(keys.origin(), Ok([-1.0, 2.5, 0.0]), "{text}");
+        }
+        assert_eq!(keys("image: bob's [1].pgm\nmode: scale\n")["image"], "bob's [1].pgm");
     }
 }
