@@ -343,6 +343,17 @@ fn a_map_becomes_the_scenario_that_is_asked_for() {
 }
 
 #[test]
+fn a_map_with_a_long_name_gives_a_name_that_a_scenario_may_have() {
+    let name = format!("a{}", "ü".repeat(60));
+    let map = Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name).with_extension("map");
+    std::fs::copy("tests/maps/cellar.map", &map).unwrap();
+    let output = pleach(&["import", map.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output.stderr));
+    let shortened = format!("name = \"a{}\"", "ü".repeat(49));
+    assert!(said(&output.stdout).contains(&shortened), "{}", said(&output.stdout));
+}
+
+#[test]
 fn a_scenario_takes_the_place_of_no_file_of_its_map() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("places");
     std::fs::create_dir_all(&folder).unwrap();
