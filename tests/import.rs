@@ -333,6 +333,51 @@ fn lengths_that_are_none_are_refused() {
     );
 }
 
+/// As in a survey, whose coordinates are metres from far away.
+#[test]
+fn floors_far_from_the_origin_are_moved_there() {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("survey.geojson");
+    let [west, south] = [500_000.25, 4_649_776.5];
+    let [east, north] = [west + 40.0, south + 20.0];
+    let floor = format!(
+        r#"{{"type": "Polygon", "coordinates":
+            [[[{west}, {south}], [{east}, {south}], [{east}, {north}], [{west}, {north}], [{west}, {south}]]]}}"#
+    );
+    let feature = |kind: &str, geometry: &str| {
+        format!(
+            r#"{{"type": "Feature", "properties": {{"kind": "{kind}"}}, "geometry": {geometry}}}"#
+        )
+    };
+    let task = format!(r#"{{"type": "Point", "coordinates": [{}, {}]}}"#, west + 30.0, south + 5.0);
+    let features = [feature("floor", &floor), feature("task", &task)].join(", ");
+    std::fs::write(&path, format!(r#"{{"type": "FeatureCollection", "features": [{features}]}}"#))
+        .unwrap();
+    let plan = import::read(&path, &Reading { planar: true, ..Reading::default() }).unwrap();
+    let (scenario, _) = import::skeleton(&plan, &Choices::named("survey")).unwrap();
+    assert!(scenario.workspace.boundary.contains(&[40.25, 20.5]), "{:?}", scenario.workspace);
+    assert_eq!(scenario.task[0].position, [30.25, 5.5]);
+    let said = "(500000, 4649776) of the map is the origin of the scenario, whose coordinates are at most 10000";
+    assert_eq!(plan.notes, [said]);
+}
+
+#[test]
+fn as_many_tasks_are_placed_as_there_are_places() {
+    let plan = plan("cellar.map", &Reading::default());
+    let choices = Choices { far_tasks: 3000, ..Choices::named("cellar") };
+    let (scenario, notes) = import::skeleton(&plan, &choices).unwrap();
+    let mut places: Vec<_> =
+        scenario.task.iter().map(|task| task.position.map(f64::to_bits)).collect();
+    let count = places.len();
+    assert!((100..3000).contains(&count), "{count}");
+    places.sort();
+    places.dedup();
+    assert_eq!(places.len(), count);
+    let said = format!(
+        "{count} tasks are placed and not 3000: there are no more places that robots reach"
+    );
+    assert!(notes.contains(&said), "{notes:?}");
+}
+
 #[test]
 fn narrow_passages_and_closed_parts_are_told() {
     let plan = plan("cellar.map", &Reading::default());
