@@ -130,10 +130,19 @@ fn a_trace_is_judged_from_its_file() {
     assert_eq!(violated.status.code(), Some(4));
     assert!(said(&violated.stdout).contains("events is violated in step"), "{violated:?}");
 
-    std::fs::write(&trace, &text[..text.len() / 2]).unwrap();
-    let torn = pleach(&["judge", path]);
-    assert_eq!(torn.status.code(), Some(2));
-    assert!(said(&torn.stderr).contains("no property is violated before it"), "{torn:?}");
+    let half = &text[..text.len() / 2];
+    let [within_a_line, after_a_line] = [half, &half[..=half.rfind('\n').unwrap()]].map(|killed| {
+        std::fs::write(&trace, killed).unwrap();
+        let verdict = pleach(&["judge", path]);
+        assert_eq!(verdict.status.code(), Some(4), "{verdict:?}");
+        said(&verdict.stdout)
+    });
+    assert!(within_a_line.contains("the trace breaks off"), "{within_a_line}");
+    assert_eq!(within_a_line, after_a_line);
+    std::fs::write(&trace, format!("{half}\n")).unwrap();
+    let spoiled = pleach(&["judge", path]);
+    assert_eq!(spoiled.status.code(), Some(2));
+    assert!(said(&spoiled.stderr).contains("no property is violated before it"), "{spoiled:?}");
     std::fs::write(&trace, &text[..10]).unwrap();
     let headless = pleach(&["judge", path]);
     assert_eq!(headless.status.code(), Some(2));
