@@ -27,7 +27,7 @@ mod svg;
 
 pub use skeleton::{Choices, SkeletonError, skeleton, text};
 
-use crate::automaton::network::scenario::WorkspaceOutline;
+use crate::automaton::network::scenario::{LARGEST_COORDINATE, WorkspaceOutline};
 use std::fs;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -59,6 +59,44 @@ pub struct Plan {
     pub places: MapPlaces,
     /// What was simplified or left out, as sentences.
     pub notes: Vec<String>,
+}
+
+/// How many times its extent a floor may be away from the origin: farther out its corners are too coarse to be moved.
+const FARTHEST_FLOOR: f64 = 1e9;
+
+impl Plan {
+    /// The plan as it is or, where its coordinates are larger than those of scenarios, such as the eastings and
+    /// northings of a survey, moved to the origin by a whole number of units.
+    fn near_the_origin(mut self) -> Self {
+        let [low, high] = [f64::min, f64::max].map(|better| {
+            let corners = self.workspace.boundary.iter().copied();
+            corners.reduce(|a, b| [0, 1].map(|axis| better(a[axis], b[axis]))).unwrap_or_default()
+        });
+        let extent = (high[0] - low[0]).max(high[1] - low[1]);
+        let farthest = low.into_iter().chain(high).map(f64::abs).fold(0.0, f64::max);
+        let is_far = farthest > LARGEST_COORDINATE && farthest < FARTHEST_FLOOR * extent;
+        if !is_far || extent >= LARGEST_COORDINATE {
+            return self;
+        }
+        let origin = low.map(f64::floor);
+        for [x, y] in self.points() {
+            (*x, *y) = (*x - origin[0], *y - origin[1]);
+        }
+        let [x, y] = origin;
+        self.notes.push(format!(
+            "({x}, {y}) of the map is the origin of the scenario, whose coordinates are at most \
+             {LARGEST_COORDINATE}"
+        ));
+        self
+    }
+
+    /// All its corners and places.
+    fn points(&mut self) -> impl Iterator<Item = &mut [f64; 2]> {
+        let WorkspaceOutline { boundary, holes } = &mut self.workspace;
+        let MapPlaces { access_points, robots, tasks } = &mut self.places;
+        let lists = [boundary, access_points, robots, tasks];
+        lists.into_iter().chain(holes).flatten()
+    }
 }
 
 /// Places that a map names.
@@ -105,26 +143,43 @@ fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
+/// The ending of the name of a map, which says of which kind it is.
+fn ending_of(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+fn text_of(path: &Path) -> Result<String, ImportError> {
+    fs::read_to_string(path).map_err(|source| ImportError::Unreadable { path: path.into(), source })
+}
+
+/// The files that a map consists of: itself and, where it names one, its image.
+///
+/// # Errors
+/// When a map that may name an image cannot be read or names none.
+pub fn files(path: &Path) -> Result<Vec<PathBuf>, ImportError> {
+    let mut files = vec![path.to_owned()];
+    if matches!(ending_of(path).as_str(), "yaml" | "yml") {
+        files.push(ros::image_of(path, &text_of(path)?)?);
+    }
+    Ok(files)
+}
+
 /// Reads a map; the ending of its name says of which kind it is.
 ///
 /// # Errors
 /// When the file cannot be read, is of an unknown kind or malformed, or has no floor.
 pub fn read(path: &Path, reading: &Reading) -> Result<Plan, ImportError> {
     let malformed = |problem| ImportError::Malformed { path: path.into(), problem };
-    let text = || {
-        fs::read_to_string(path)
-            .map_err(|source| ImportError::Unreadable { path: path.into(), source })
-    };
+    let text = || text_of(path);
     if !(reading.scale.is_finite() && reading.scale > 0.0) {
         return Err(malformed(format!("the scale is {}: it must be positive", reading.scale)));
     }
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let plan = match ending.to_ascii_lowercase().as_str() {
+    let plan = match ending_of(path).as_str() {
         "yaml" | "yml" => ros::read(path, &text()?)?.trace(reading),
         "map" => moving_ai::read(&text()?).map_err(malformed)?.trace(reading),
         "geojson" | "json" => geojson::read(&text()?, reading),
         "svg" => svg::read(&text()?, reading),
         _ => return Err(ImportError::UnknownKind(path.into())),
     };
-    plan.map_err(malformed)
+    Ok(plan.map_err(malformed)?.near_the_origin())
 }

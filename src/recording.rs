@@ -65,12 +65,12 @@ struct Log {
 /// `INFO` of Foxglove's levels.
 const INFO: u8 = 2;
 
-/// Writes a trace as a recording, one whose last line is torn up to there; the number of messages.
+/// Writes a trace as a recording, one that breaks off up to there; the number of messages.
 ///
 /// # Errors
 /// When the trace cannot be read or the recording cannot be written.
 pub fn write<R: BufRead, W: Write + Seek>(
-    mut trace: TraceReader<R>,
+    trace: TraceReader<R>,
     output: W,
 ) -> Result<u64, RecordingError> {
     let scenario = trace.scenario().clone();
@@ -78,12 +78,8 @@ pub fn write<R: BufRead, W: Write + Seek>(
     recording.write(Topic::Plan, 0.0, &scene::plan(&scenario))?;
     let mut log: Vec<String> = Vec::new();
     let mut time = 0.0;
-    while let Some(entry) = trace.next() {
-        let entry = match entry {
-            Err(error) if error.is_torn() && trace.next().is_none() => break,
-            entry => entry?,
-        };
-        match entry {
+    for entry in trace {
+        match entry? {
             // Events stand before the step of their instant.
             TraceEntry::Event { event, .. } => log.push(story::tell(&event)),
             TraceEntry::Step(snapshot) => {

@@ -31,7 +31,7 @@ use crate::automaton::network::scenario::{Scenario, Strategy};
 use crate::mission::Watcher;
 use line::{EndLine, Line, LineOut, StepLine};
 use serde_json::{Map, Value};
-use std::io::{self, BufRead, Lines, Write};
+use std::io::{self, BufRead, Write};
 use thiserror::Error;
 
 /// What the header calls the format.
@@ -113,11 +113,13 @@ pub enum TraceEntry {
 }
 
 /// Reads a trace: the header at once, then entry by entry as an iterator.
+///
+/// The trace of a run that was killed breaks off, often within a line. Its entries end before that line.
 #[derive(Debug)]
 pub struct TraceReader<R> {
     scenario: Scenario,
     faults: Faults,
-    lines: Lines<R>,
+    input: R,
     number: usize,
 }
 
@@ -126,15 +128,14 @@ impl<R: BufRead> TraceReader<R> {
     ///
     /// # Errors
     /// The first line cannot be read or is not the header of a trace of version [`VERSION`].
-    pub fn new(input: R) -> Result<Self, TraceError> {
-        let mut lines = input.lines();
-        let first = lines.next().ok_or(TraceError::Empty)?;
-        match parse(1, first)? {
+    pub fn new(mut input: R) -> Result<Self, TraceError> {
+        let first = WrittenLine::read(&mut input, 1)?.ok_or(TraceError::Empty)?;
+        match first.parse()? {
             Line::Header { format, version, .. } if format != FORMAT || version != VERSION => {
                 Err(TraceError::OtherFormat { format, version })
             }
             Line::Header { scenario, faults, .. } => {
-                Ok(Self { scenario: as_traced(*scenario), faults, lines, number: 1 })
+                Ok(Self { scenario: as_traced(*scenario), faults, input, number: 1 })
             }
             _ => Err(TraceError::Misplaced { line: 1, wanted: "the header" }),
         }
@@ -155,20 +156,29 @@ impl<R: BufRead> Iterator for TraceReader<R> {
     type Item = Result<TraceEntry, TraceError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let text = self.lines.next()?;
         self.number += 1;
-        Some(parse(self.number, text).and_then(|line| {
-            match line {
-                Line::Event { k, event } => Ok(TraceEntry::Event { step: k, event }),
-                Line::Step(step) => (Snapshot::try_from(*step)
-                    .map(|snapshot| TraceEntry::Step(Box::new(snapshot))))
-                .map_err(|wrong| TraceError::Uneven { line: self.number, wrong }),
-                Line::End(end) => Ok(TraceEntry::End(end.into())),
-                Line::Header { .. } => {
-                    Err(TraceError::Misplaced { line: self.number, wanted: "a step, event or end" })
-                }
-            }
-        }))
+        let line = match WrittenLine::read(&mut self.input, self.number) {
+            Ok(line) => line?,
+            Err(error) => return Some(Err(error)),
+        };
+        match line.parse() {
+            Err(error) if line.breaks_off(&error) => None,
+            parsed => Some(parsed.and_then(|parsed| entry(self.number, parsed))),
+        }
+    }
+}
+
+/// What a line after the header says.
+fn entry(number: usize, line: Line) -> Result<TraceEntry, TraceError> {
+    match line {
+        Line::Event { k, event } => Ok(TraceEntry::Event { step: k, event }),
+        Line::Step(step) => (Snapshot::try_from(*step))
+            .map(|snapshot| TraceEntry::Step(Box::new(snapshot)))
+            .map_err(|wrong| TraceError::Uneven { line: number, wrong }),
+        Line::End(end) => Ok(TraceEntry::End(end.into())),
+        Line::Header { .. } => {
+            Err(TraceError::Misplaced { line: number, wanted: "a step, event or end" })
+        }
     }
 }
 
@@ -187,12 +197,34 @@ pub(crate) fn step_line(snapshot: &Snapshot) -> serde_json::Result<Map<String, V
     }
 }
 
-fn parse(number: usize, text: io::Result<String>) -> Result<Line, TraceError> {
-    let text = text.map_err(|source| TraceError::Unreadable { line: number, source })?;
-    serde_json::from_str(&text).map_err(|source| match number {
-        1 if !source.is_eof() => TraceError::NotATrace { source },
-        line => TraceError::NotALine { line, source },
-    })
+/// A line as it stands in the trace.
+struct WrittenLine {
+    number: usize,
+    text: Vec<u8>,
+}
+
+impl WrittenLine {
+    /// The next line, if there is one.
+    fn read(input: &mut impl BufRead, number: usize) -> Result<Option<Self>, TraceError> {
+        let mut text = Vec::new();
+        let length = input.read_until(b'\n', &mut text);
+        let length = length.map_err(|source| TraceError::Unreadable { line: number, source })?;
+        Ok((length > 0).then_some(Self { number, text }))
+    }
+
+    fn parse(&self) -> Result<Line, TraceError> {
+        let text = self.text.strip_suffix(b"\n").unwrap_or(&self.text);
+        serde_json::from_slice(text).map_err(|source| match self.number {
+            1 if !source.is_eof() => TraceError::NotATrace { source },
+            line => TraceError::NotALine { line, source },
+        })
+    }
+
+    /// Whether the trace breaks off within this line.
+    fn breaks_off(&self, error: &TraceError) -> bool {
+        !self.text.ends_with(b"\n")
+            && matches!(error, TraceError::NotALine { source, .. } if source.is_eof())
+    }
 }
 
 /// Why a text is not a trace. Lines are counted from 1.
@@ -231,11 +263,4 @@ pub enum TraceError {
 /// What is wrong in a line that was read alone.
 fn within_line(error: &serde_json::Error) -> String {
     error.to_string().replace(" at line 1 column ", " in column ")
-}
-
-impl TraceError {
-    /// Whether a line stops before its end, as the last one of a run that was killed.
-    pub(crate) fn is_torn(&self) -> bool {
-        matches!(self, TraceError::NotALine { source, .. } if source.is_eof())
-    }
 }

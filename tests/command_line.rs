@@ -130,10 +130,19 @@ fn a_trace_is_judged_from_its_file() {
     assert_eq!(violated.status.code(), Some(4));
     assert!(said(&violated.stdout).contains("events is violated in step"), "{violated:?}");
 
-    std::fs::write(&trace, &text[..text.len() / 2]).unwrap();
-    let torn = pleach(&["judge", path]);
-    assert_eq!(torn.status.code(), Some(2));
-    assert!(said(&torn.stderr).contains("no property is violated before it"), "{torn:?}");
+    let half = &text[..text.len() / 2];
+    let [within_a_line, after_a_line] = [half, &half[..=half.rfind('\n').unwrap()]].map(|killed| {
+        std::fs::write(&trace, killed).unwrap();
+        let verdict = pleach(&["judge", path]);
+        assert_eq!(verdict.status.code(), Some(4), "{verdict:?}");
+        said(&verdict.stdout)
+    });
+    assert!(within_a_line.contains("the trace breaks off"), "{within_a_line}");
+    assert_eq!(within_a_line, after_a_line);
+    std::fs::write(&trace, format!("{half}\n")).unwrap();
+    let spoiled = pleach(&["judge", path]);
+    assert_eq!(spoiled.status.code(), Some(2));
+    assert!(said(&spoiled.stderr).contains("no property is violated before it"), "{spoiled:?}");
     std::fs::write(&trace, &text[..10]).unwrap();
     let headless = pleach(&["judge", path]);
     assert_eq!(headless.status.code(), Some(2));
@@ -340,6 +349,34 @@ fn a_map_becomes_the_scenario_that_is_asked_for() {
     let placed = import(&["--access-point", &place(access_point), "--task", &place(task)]);
     assert_eq!(placed.access_point[0].position, access_point);
     assert_eq!(placed.task[0].position, task);
+}
+
+#[test]
+fn a_map_with_a_long_name_gives_a_name_that_a_scenario_may_have() {
+    let name = format!("a{}", "ü".repeat(60));
+    let map = Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name).with_extension("map");
+    std::fs::copy("tests/maps/cellar.map", &map).unwrap();
+    let output = pleach(&["import", map.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output.stderr));
+    let shortened = format!("name = \"a{}\"", "ü".repeat(49));
+    assert!(said(&output.stdout).contains(&shortened), "{}", said(&output.stdout));
+}
+
+#[test]
+fn a_scenario_takes_the_place_of_no_file_of_its_map() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("places");
+    std::fs::create_dir_all(&folder).unwrap();
+    let [map, image] = ["flat.yaml", "flat.pgm"].map(|name| {
+        std::fs::copy(Path::new("tests/maps").join(name), folder.join(name)).unwrap();
+        folder.join(name).to_str().unwrap().to_owned()
+    });
+    for file in [&map, &image] {
+        let before = std::fs::read(file).unwrap();
+        let output = pleach(&["import", &map, "-o", file]);
+        assert_eq!(output.status.code(), Some(2), "{file}");
+        assert!(said(&output.stderr).contains("choose another path"), "{output:?}");
+        assert_eq!(std::fs::read(file).unwrap(), before, "{file}");
+    }
 }
 
 // ---- Checks ------------------------------------------------------------------------------------

@@ -51,6 +51,58 @@ fn a_map_of_the_map_server_is_traced_without_a_wall_inside() {
     assert!(simple * 2 < exact, "{simple} of {exact} corners");
 }
 
+/// How many cells are free of a map of the map server, of whose 12 by 12 pixels those in the right half are as given
+/// and the others white.
+fn free_cells(name: &str, image_header: &str, pixel: &[u8], keys: &str) -> Result<String, String> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [image, map] = ["pnm", "yaml"].map(|ending| folder.join(name).with_extension(ending));
+    let white = vec![255; pixel.len()];
+    let row = [white.repeat(6), pixel.repeat(6)].concat();
+    std::fs::write(&image, [image_header.as_bytes(), &row.repeat(12)].concat()).unwrap();
+    std::fs::write(&map, format!("image: {name}.pnm\nresolution: 1\n{keys}")).unwrap();
+    let reading = Reading { tolerance: Some(0.0), ..Reading::default() };
+    let plan = import::read(&map, &reading).map_err(|error| error.to_string())?;
+    Ok(plan.notes[1].clone())
+}
+
+const GREY: &str = "P5 12 12 255\n";
+const COLOURS: &str = "P6 12 12 255\n";
+const TRANSPARENT: &str =
+    "P7\nWIDTH 12\nHEIGHT 12\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n";
+
+/// Channels are averaged, alpha among them in the mode trinary; what is occupied is decided before what is free.
+#[test]
+fn pixels_are_free_where_the_map_server_says_so() {
+    let [all, half] = ["144 free cells of side 1", "72 free cells of side 1"];
+    for (image_header, pixel, keys, expected) in [
+        (GREY, &[206][..], "", all), // an occupancy of 0.192
+        (GREY, &[205], "", half),    // of 0.196078
+        (GREY, &[217], "occupied_thresh: 0.1\n", half),
+        (GREY, &[217], "free_thresh: 0.1\n", half),
+        (COLOURS, &[255, 255, 110], "", all),
+        (COLOURS, &[255, 255, 0], "", half),
+        (TRANSPARENT, &[255, 255, 255, 0], "", half),
+        (TRANSPARENT, &[255, 255, 255, 60], "", all),
+        (TRANSPARENT, &[255, 255, 255, 254], "mode: scale\n", half),
+    ] {
+        let free = free_cells("pixels", image_header, pixel, keys);
+        assert_eq!(free.as_deref(), Ok(expected), "{pixel:?} {keys}");
+    }
+}
+
+#[test]
+fn thresholds_that_are_no_occupancy_are_refused() {
+    for (keys, said) in [
+        ("free_thresh: 25\n", "free_thresh is 25: it must be from 0 to 1"),
+        ("occupied_thresh: -0.65\n", "occupied_thresh is -0.65: it must be from 0 to 1"),
+        ("mode: raw\n", "mode: raw maps are not read; trinary and scale are"),
+        ("mode: grey\n", "mode: grey maps are not read; trinary and scale are"),
+    ] {
+        let error = free_cells("thresholds", GREY, &[0], keys).unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
+}
+
 #[test]
 fn an_imported_flat_is_serviced() {
     let plan = plan("flat.yaml", &Reading::default());
@@ -131,32 +183,130 @@ fn shapes_of_a_drawing_bound_the_floor() {
     assert!(bevel.count() > 5, "the rounded corner is at the top right");
 }
 
+/// A room of 40 by 20, and what else is drawn.
+fn room_with(name: &str, drawn: &str) -> Result<Plan, String> {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let room = "<path d='M0,0 H40 V20 H0 Z'/>";
+    std::fs::write(&path, format!("<svg>{room}{drawn}</svg>")).unwrap();
+    import::read(&path, &Reading::default()).map_err(|error| error.to_string())
+}
+
 /// Only closed shapes that are seen bound the floor; other lines are told.
 #[test]
 fn of_a_drawing_only_closed_shapes_are_taken() {
-    let room = "<path d='M0,0 H40 V20 H0 Z'/>";
-    let read = |name: &str, drawn: &str| {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        std::fs::write(&path, format!("<svg>{drawn}</svg>")).unwrap();
-        import::read(&path, &Reading::default()).unwrap()
-    };
-    let alone = read("room.svg", room);
+    let read = |name: &str, drawn: &str| room_with(name, drawn).unwrap();
+    let alone = read("room.svg", "");
     assert_eq!((corners(&alone), &*alone.notes), (4, &[][..]));
     for unseen in [
         "<defs><rect width='400' height='400'/></defs>",
         "<clipPath><circle r='9'/></clipPath>",
         "<g display='none'><rect x='3' y='3' width='4' height='4'/></g>",
         "<rect x='3' y='3' width='4' height='4' style='fill: red; display: none'/>",
+        "<symbol id='a' viewBox='0 0 9 9'><rect width='9' height='9'/></symbol>",
+        "<g visibility='hidden'><rect x='3' y='3' width='4' height='4'/></g>",
+        "<rect x='3' y='3' width='4' height='4' style='visibility: collapse'/>",
     ] {
-        assert_eq!(read("unseen.svg", &format!("{room}{unseen}")), alone, "{unseen}");
+        assert_eq!(read("unseen.svg", unseen), alone, "{unseen}");
     }
     let lines = "<path d='M5,5 H9 V9'/><line x1='1' y1='1' x2='9' y2='1'/>\
                  <polyline points='12,12 15,12 15,15'/>";
-    let drawn = read("lines.svg", &format!("{room}{lines}"));
+    let drawn = read("lines.svg", lines);
     assert_eq!(drawn.workspace, alone.workspace);
     assert_eq!(drawn.notes, ["left out: 3 lines that are not closed, and bound no floor"]);
     let pillar = "<polyline points='12,12 15,12 15,15 12,12'/>";
-    assert_eq!(read("pillar.svg", &format!("{room}{pillar}")).workspace.holes.len(), 1);
+    assert_eq!(read("pillar.svg", pillar).workspace.holes.len(), 1);
+}
+
+/// One pillar of 4 by 4, drawn in many ways.
+#[test]
+fn shapes_stand_where_the_drawing_shows_them() {
+    let pillar = room_with("shown.svg", "<rect x='10' y='5' width='4' height='4'/>").unwrap();
+    assert_eq!(pillar.workspace.holes.len(), 1);
+    for drawn in [
+        "<defs><rect id='a' width='4' height='4'/></defs><use href='#a' x='10' y='5'/>",
+        "<use xlink:href='#a' x='10' transform='translate(0 5)'/>\
+         <defs><g transform='scale(5)'><rect id='a' transform='scale(2)' width='2' height='2'/></g></defs>",
+        "<symbol id='a' viewBox='0 0 1 1'><rect width='1' height='1'/></symbol>\
+         <use href='#a' x='10' y='5' width='4' height='4'/>",
+        "<defs><use id='b' href='#a' y='5'/><rect id='a' width='4' height='4'/></defs>\
+         <use href='#b' x='10'/>",
+        "<svg x='10' y='5'><rect width='4' height='4'/></svg>",
+        "<svg x='10' y='5' width='4' height='4' viewBox='100 100 2 2'>\
+         <rect x='100' y='100' width='2' height='2'/></svg>",
+        "<svg x='8' y='5' width='8' height='4' viewBox='0 0 2 2'><rect width='2' height='2'/></svg>",
+        "<svg x='8' y='3' width='2' height='4' viewBox='0 0 2 2' preserveAspectRatio='xMinYMax slice'>\
+         <rect x='1' y='1' width='2' height='2'/></svg>",
+        "<svg x='10' y='5' width='8' height='4' viewBox='0 0 2 2' preserveAspectRatio='none'>\
+         <rect width='1' height='2'/></svg>",
+        "<g visibility='hidden'>\
+         <rect x='10' y='5' width='4' height='4' visibility='visible'/></g>",
+        "<rect display='none' style='display: inline' x='10' y='5' width='4' height='4'/>",
+    ] {
+        assert_eq!(room_with("shown.svg", drawn).as_ref(), Ok(&pillar), "{drawn}");
+    }
+}
+
+/// Corners of rectangles are walls where they are rounded.
+#[test]
+fn rounded_rectangles_lose_their_corners() {
+    let area_of_hole = |radii: &str| {
+        let drawn = format!("<rect x='10' y='5' width='8' height='4' {radii}/>");
+        let hole = &room_with("rounded.svg", &drawn).unwrap().workspace.holes[0];
+        let sides = hole.iter().zip(hole.iter().cycle().skip(1));
+        (sides.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0).abs()
+    };
+    let corners = 4.0 - std::f64::consts::PI; // of a circle of radius 1
+    for (radii, lost) in [
+        ("rx='0' ry='2'", 0.0),
+        ("rx='1'", corners),
+        ("ry='1'", corners),
+        ("rx='auto' ry='1'", corners),
+        ("rx='2' ry='1'", 2.0 * corners),
+        ("rx='100' ry='100'", 8.0 * corners),
+    ] {
+        let area = area_of_hole(radii);
+        assert!((area - (32.0 - lost)).abs() < 0.3, "{radii}: {area}");
+    }
+}
+
+/// What is drawn and not read is told.
+#[test]
+fn nothing_that_is_drawn_vanishes_silently() {
+    let use_of = |what: &str| format!("<use href='{what}'/>");
+    let doubling: String = (0..25)
+        .map(|level| format!("<g id='g{level}'>{0}{0}</g>", use_of(&format!("#g{}", level + 1))))
+        .collect();
+    for (drawn, said) in [
+        (use_of("#none"), "byte 34: use of \"#none\": no element has this id"),
+        (use_of("other.svg#a"), "only elements of the same drawing, as #name, are read"),
+        ("<use/>".into(), "use has no href"),
+        (format!("<g id='a'>{}</g>", use_of("#a")), "use draws itself"),
+        (
+            format!("<defs>{doubling}<g id='g25'/></defs>{}", use_of("#g0")),
+            "more than 1000000 elements",
+        ),
+        ("<svg width='100%' height='9' viewBox='0 0 1 1'/>".into(), "width of svg is \"100%\""),
+        ("<rect width='-4' height='4'/>".into(), "width of rect is -4: at least 0 is possible"),
+        ("<circle r='-4'/>".into(), "r of circle is -4: at least 0 is possible"),
+        ("</svg><svg>".into(), "the file goes on after its drawing has ended"),
+    ] {
+        let error = room_with("refused.svg", &drawn).unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
+    for (drawn, said) in [
+        (
+            "<text>hall</text><g><image/><text/></g>",
+            "left out: 3 elements that are no shape (image, text)",
+        ),
+        (
+            "<g clip-path='url(#a)'><rect x='1' y='1' width='1' height='1'/></g>",
+            "clip paths and masks are not read: 1 element is taken whole",
+        ),
+        ("<style>.a { display: none }</style>", "style sheets are not read"),
+    ] {
+        let notes = room_with("noted.svg", drawn).unwrap().notes;
+        assert!(notes.len() == 1 && notes[0].starts_with(said), "{notes:?}");
+    }
 }
 
 /// What would take for ever, or make no sense, is refused.
@@ -181,6 +331,51 @@ fn lengths_that_are_none_are_refused() {
         error.contains("the tolerance of curves is 0.000000000001: at least 0.0003"),
         "{error}"
     );
+}
+
+/// As in a survey, whose coordinates are metres from far away.
+#[test]
+fn floors_far_from_the_origin_are_moved_there() {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("survey.geojson");
+    let [west, south] = [500_000.25, 4_649_776.5];
+    let [east, north] = [west + 40.0, south + 20.0];
+    let floor = format!(
+        r#"{{"type": "Polygon", "coordinates":
+            [[[{west}, {south}], [{east}, {south}], [{east}, {north}], [{west}, {north}], [{west}, {south}]]]}}"#
+    );
+    let feature = |kind: &str, geometry: &str| {
+        format!(
+            r#"{{"type": "Feature", "properties": {{"kind": "{kind}"}}, "geometry": {geometry}}}"#
+        )
+    };
+    let task = format!(r#"{{"type": "Point", "coordinates": [{}, {}]}}"#, west + 30.0, south + 5.0);
+    let features = [feature("floor", &floor), feature("task", &task)].join(", ");
+    std::fs::write(&path, format!(r#"{{"type": "FeatureCollection", "features": [{features}]}}"#))
+        .unwrap();
+    let plan = import::read(&path, &Reading { planar: true, ..Reading::default() }).unwrap();
+    let (scenario, _) = import::skeleton(&plan, &Choices::named("survey")).unwrap();
+    assert!(scenario.workspace.boundary.contains(&[40.25, 20.5]), "{:?}", scenario.workspace);
+    assert_eq!(scenario.task[0].position, [30.25, 5.5]);
+    let said = "(500000, 4649776) of the map is the origin of the scenario, whose coordinates are at most 10000";
+    assert_eq!(plan.notes, [said]);
+}
+
+#[test]
+fn as_many_tasks_are_placed_as_there_are_places() {
+    let plan = plan("cellar.map", &Reading::default());
+    let choices = Choices { far_tasks: 3000, ..Choices::named("cellar") };
+    let (scenario, notes) = import::skeleton(&plan, &choices).unwrap();
+    let mut places: Vec<_> =
+        scenario.task.iter().map(|task| task.position.map(f64::to_bits)).collect();
+    let count = places.len();
+    assert!((100..3000).contains(&count), "{count}");
+    places.sort();
+    places.dedup();
+    assert_eq!(places.len(), count);
+    let said = format!(
+        "{count} tasks are placed and not 3000: there are no more places that robots reach"
+    );
+    assert!(notes.contains(&said), "{notes:?}");
 }
 
 #[test]
@@ -216,6 +411,7 @@ fn maps_that_are_none_are_refused() {
         ("g.svg", "<svg></svg>", "no floor"),
         ("i.svg", "<svg><rect width='9' height='9' transform='scale(0)'/></svg>", "no floor"),
         ("j.svg", "<svg><rect width='9' height='9'/>", "it is cut off"),
+        ("m.svg", "<html><svg/></html>", "byte 0: the outermost element is html, not svg"),
         ("k.svg", "<svg><rect width='1e300' height='1e300'/></svg>", "a coordinate is 1e300"),
         ("l.map", "type octile\nheight 1\nwidth 2\nmap\n@T\n", "no cell of the map is free"),
         ("h.txt", "", "the ending says no kind of map"),

@@ -123,6 +123,22 @@ fn an_end_with_a_reason_keeps_it() {
     assert!(matches!(&entries[..], [Ok(TraceEntry::End(read))] if *read == end));
 }
 
+/// The last line of a run that was killed is not an entry until it is whole, and nothing wrong either.
+#[test]
+fn a_trace_that_breaks_off_is_read_up_to_there() {
+    let text = written();
+    let header = text.find('\n').unwrap() + 1;
+    for end in (header..text.len()).filter(|&end| text.is_char_boundary(end)) {
+        let (killed, whole_lines) = (&text[..end], text[header..=end].matches('\n').count());
+        let entries: Result<Vec<_>, _> = TraceReader::new(killed.as_bytes()).unwrap().collect();
+        assert_eq!(entries.unwrap().len(), whole_lines, "{end}");
+        assert!(pleach::page::of_trace(killed.as_bytes()).is_ok(), "{end}");
+    }
+    let spoiled = format!("{}\n", &text[..text.len() - 9]);
+    let last = TraceReader::new(spoiled.as_bytes()).unwrap().last().unwrap();
+    assert!(matches!(last, Err(TraceError::NotALine { .. })), "{last:?}");
+}
+
 #[test]
 fn what_is_not_a_trace_is_refused() {
     let refused = |text: &str| TraceReader::new(text.as_bytes()).unwrap_err();

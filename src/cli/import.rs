@@ -5,13 +5,13 @@ use super::output;
 use super::remarks;
 use super::source::STANDARD;
 use super::status::{Failure, Status};
-use pleach::automaton::network::scenario::Remark;
+use pleach::automaton::network::scenario::{LONGEST_NAME, Remark};
 use pleach::import::{self, Choices, Reading};
 use std::path::Path;
 
 /// Reads a map and writes a scenario.
 pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
-    output::check_places([&arguments.map], &arguments.output)?;
+    output::check_places(&import::files(&arguments.map)?, &arguments.output)?;
     let reading = Reading {
         tolerance: arguments.tolerance,
         scale: arguments.scale,
@@ -46,10 +46,11 @@ pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
     Ok(Status::Done)
 }
 
-/// A name for the scenario: that of the file, with `-` for what cannot be in a name.
+/// A name for the scenario: that of the file, with `-` for what cannot be in a name, as far as a name may be long.
 fn name_of(map: &Path) -> String {
     let stem = map.file_stem().unwrap_or_default().to_string_lossy();
-    let name: String =
+    let mut name: String =
         stem.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' }).collect();
+    name.truncate(name.floor_char_boundary(LONGEST_NAME));
     if name.is_empty() { "map".into() } else { name }
 }

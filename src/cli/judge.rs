@@ -13,13 +13,13 @@ pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
     let path = &arguments.trace;
     let failure = |what: String| Failure::Judge(format!("{}: {what}", path.display()));
     let unreadable = |what: String| failure(format!("{what}; nothing was judged"));
-    let torn = |what: String| failure(format!("{what}; no property is violated before it"));
+    let spoiled = |what: String| failure(format!("{what}; no property is violated before it"));
     let input =
         source::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
     let reader = TraceReader::new(input).map_err(|error| unreadable(error.to_string()))?;
     let faults = judged_faults(&Settings::resolve(reader.scenario()), reader.faults());
     let whole = if faults.are_none() { "" } else { ", judged by what must hold under any fault" };
-    match judge(reader).map_err(|error| torn(error.to_string()))? {
+    match judge(reader).map_err(|error| spoiled(error.to_string()))? {
         Verdict::Sound { periods, end, .. } => {
             let (trace, name) = (path.display(), end.outcome.name().replace('_', " "));
             output::say(&format!(

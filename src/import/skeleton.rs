@@ -1,7 +1,7 @@
 //! From a floor plan to a scenario that runs.
 
 use super::gaps;
-use super::{MapPlaces, Plan};
+use super::{MapPlaces, Plan, counted};
 use crate::automaton::network::Site;
 use crate::automaton::network::scenario::{
     AccessPoint, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
@@ -141,18 +141,28 @@ pub fn skeleton(
         .map(|position| RobotStart::at(rounded(position, &scenario), rounded_rate(rate)))
         .collect();
     let tasks = first_of([&choices.tasks, &named.tasks]);
-    scenario.task = match tasks.is_empty() {
+    let tasks = match tasks.is_empty() {
         false => tasks,
-        true => places.far_apart(&site, choices.far_tasks),
-    }
-    .into_iter()
-    .map(Task::at)
-    .collect();
+        true => {
+            let far = places.far_apart(&site, choices.far_tasks);
+            notes.extend(too_few_places(far.len(), choices.far_tasks));
+            far
+        }
+    };
+    scenario.task = tasks.into_iter().map(Task::at).collect();
     let unreached = places.unreached(&site);
     if unreached > 0.005 {
         notes.push(format!("robots cannot reach {:.1} % of the floor", 100.0 * unreached));
     }
     Ok((ValidScenario::new(scenario)?, notes))
+}
+
+/// What is to be said where the floor has fewer places for tasks than are asked for.
+fn too_few_places(found: usize, asked_for: usize) -> Option<String> {
+    let tasks = counted(found, "task is", "tasks are");
+    (found < asked_for).then(|| {
+        format!("{tasks} placed and not {asked_for}: there are no more places that robots reach")
+    })
 }
 
 fn lengths_are_positive(choices: &Choices) -> Result<(), SkeletonError> {
@@ -271,7 +281,8 @@ impl Lattice {
         Some(rounded_to((*widest).into(), site.workspace.extent()))
     }
 
-    /// Places far from the access points and from each other, one after another.
+    /// Different places far from the access points and from each other, one after another; fewer than asked for if
+    /// there are no more.
     fn far_apart(&self, site: &Site, count: usize) -> Vec<[f64; 2]> {
         let mut chosen = site.access_points.clone();
         let nearest = |place: Point, chosen: &[Point]| {
@@ -287,6 +298,7 @@ impl Lattice {
                 break;
             };
             chosen.push(self.places[farthest]);
+            distances[farthest] = f64::NEG_INFINITY; // not again
             for (place, distance) in self.places.iter().zip(&mut distances) {
                 *distance = distance.min(site.distance(chosen[chosen.len() - 1], *place));
             }

@@ -28,26 +28,24 @@ pub enum PageError {
     Step(#[source] io::Error),
 }
 
-/// Makes the page of a trace. A trace whose last line is torn, as a run leaves it that was killed,
-/// is shown up to there, and the page says that no end is recorded.
+/// Makes the page of a trace. A trace that breaks off, as a run leaves it that was killed, is shown
+/// up to there, and the page says that no end is recorded.
 ///
 /// # Errors
 /// When the text is no trace, or the scenario in its header cannot be run.
 pub fn of_trace(trace: impl BufRead) -> Result<String, PageError> {
-    let mut reader = TraceReader::new(trace)?;
+    let reader = TraceReader::new(trace)?;
     let scenario = ValidScenario::new(reader.scenario().clone())?;
     let mut page = MissionPage::with_faults(&scenario, reader.faults());
     let mut events: Vec<MissionEvent> = Vec::new();
-    while let Some(entry) = reader.next() {
-        match entry {
-            Ok(TraceEntry::Event { event, .. }) => events.push(event),
-            Ok(TraceEntry::Step(snapshot)) => {
+    for entry in reader {
+        match entry? {
+            TraceEntry::Event { event, .. } => events.push(event),
+            TraceEntry::Step(snapshot) => {
                 page.observe(&snapshot, &events).map_err(PageError::Step)?;
                 events.clear();
             }
-            Ok(TraceEntry::End(end)) => page.end(&end).map_err(PageError::Step)?,
-            Err(error) if error.is_torn() && reader.next().is_none() => break,
-            Err(error) => return Err(error.into()),
+            TraceEntry::End(end) => page.end(&end).map_err(PageError::Step)?,
         }
     }
     Ok(page.render())

@@ -17,8 +17,8 @@ mod valid;
 mod validation;
 
 pub use control::{
-    CONTROL, Control, ControlKey, MOST_PERIODS, MotionSolver, RoutingMethod, Strategy, Teams,
-    Values,
+    CONTROL, Control, ControlKey, LARGEST_COORDINATE, MOST_PERIODS, MotionSolver, RoutingMethod,
+    Strategy, Teams, Values,
 };
 pub use fault::{Fault, InvalidScenario, Problem};
 pub use fleet::Fleet;
@@ -27,6 +27,7 @@ pub use radio::{LinkModel, LinkRanges, STEEPEST, STEEPNESS};
 pub use remark::{Late, LinkCount, Remark, TaskRemark};
 pub use settings::{LinkLengths, Settings};
 pub use valid::ValidScenario;
+pub use validation::LONGEST_NAME;
 
 use serde::{Deserialize, Serialize};
 

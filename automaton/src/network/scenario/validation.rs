@@ -30,8 +30,8 @@ const LARGEST_RANGE: f64 = 1e30;
 /// The most rows of one table, and corners of one polygon.
 const MOST_ROWS: usize = 1_000_000;
 
-/// The most characters of a name: with an ending it must be the name of a file.
-const LONGEST_NAME: usize = 100;
+/// The most bytes of a name: with an ending it must be the name of a file.
+pub const LONGEST_NAME: usize = 100;
 
 impl Scenario {
     /// Everything that is wrong with the values, without a look at the geometry.
