@@ -364,6 +364,23 @@ fn inputs_have_bounds_in_every_location() {
     assert!(other.contains("[0, 1] in location `A`, and in [5, 6] in `B`"), "{other}");
 }
 
+/// A location without transitions, beside others that have some: runs may begin in either.
+#[test]
+fn runs_may_begin_where_no_transition_leads() {
+    let model = r#"<sspaceex><component id="s"><param name="x" type="real" dynamics="any"/>
+        <location id="1" name="A"><invariant>x&lt;=1</invariant><flow>x'==1</flow></location>
+        <location id="2" name="B"><flow>x'==1</flow></location>
+        <location id="3" name="C"><flow>x'==9</flow></location>
+        <transition source="2" target="3"><guard>x&gt;=1</guard></transition></component></sspaceex>"#;
+    let verdict = |initially: &str| {
+        let states = format!("initially = \"{initially}\"");
+        let question = format!("{states}\nforbidden = \"x>=4\"\ntime-horizon = 3");
+        verdict(&problem([model, &question]))
+    };
+    assert_eq!(verdict("x==0 & loc(s)==A"), Verdict::Holds);
+    assert_eq!(verdict("x==0"), Verdict::Violated);
+}
+
 /// What turns round a circle leaves it by rounding alone.
 #[test]
 fn errors_of_solutions_violate_nothing() {

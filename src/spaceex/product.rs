@@ -12,7 +12,7 @@ use crate::guards::Interval;
 use crate::verify::reach::Uncertain;
 
 use super::configuration::Options;
-use super::document::Component;
+use super::document::{Component, Transition};
 use super::network::Network;
 use super::{Initial, Problem, SpaceExError};
 use clause::fixed;
@@ -197,7 +197,8 @@ impl<'a> Product<'a> {
         }
         let initial = self.initial(options)?;
         let mut begins: Vec<&String> = initial.iter().flat_map(|one| &one.locations).collect();
-        begins.sort();
+        // The first one is enclosed, and has to have all transitions if any can be taken.
+        begins.sort_by_key(|name| (self.is_isolated(name), *name));
         begins.dedup();
         let automata = begins.into_iter().map(|name| self.automaton(Name::new(name), &initial));
         let automata = automata.collect::<Result<Vec<_>>>()?;
@@ -223,6 +224,17 @@ impl<'a> Product<'a> {
         })
     }
 
+    /// Whether no transition of any component leaves this location or leads there.
+    fn is_isolated(&self, name: &str) -> bool {
+        let tuple = self.names.iter().position(|known| known.as_str() == name);
+        let Some(tuple) = tuple.map(|at| &self.tuples[at]) else { return false };
+        self.network.instances.iter().zip(tuple).all(|(instance, place)| {
+            let id = &instance.component.locations[*place].id;
+            let touches = |one: &Transition| one.source == *id || one.target == *id;
+            !instance.component.transitions.iter().any(touches)
+        })
+    }
+
     fn automaton(&self, first: Name, initial: &[Initial]) -> Result<Automaton<Name, Name, Record>> {
         let middles = initial.first().map(|one| one.states.hull().iter().map(Interval::midpoint));
         let middles: Vec<f64> = middles.into_iter().flatten().collect();
@@ -238,8 +250,11 @@ impl<'a> Product<'a> {
         for (tuple, name) in self.tuples.iter().zip(&self.names) {
             builder = self.add_location(builder, tuple, *name, &coordinates)?;
         }
-        for (tuple, name) in self.tuples.iter().zip(&self.names) {
-            builder = self.add_transitions(builder, tuple, *name, &coordinates)?;
+        // Transitions that lead neither from the first location nor to it are no part of such an automaton.
+        if !self.is_isolated(first.as_str()) {
+            for (tuple, name) in self.tuples.iter().zip(&self.names) {
+                builder = self.add_transitions(builder, tuple, *name, &coordinates)?;
+            }
         }
         builder
             .build()
