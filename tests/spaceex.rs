@@ -420,6 +420,16 @@ fn runs_that_are_found_are_runs_of_the_model() {
 }
 
 #[test]
+fn configurations_may_begin_with_a_mark_and_have_comments() {
+    let [model, configuration] = BALL;
+    let commented: Vec<String> =
+        configuration.lines().map(|line| format!("{line} # a \"comment\"")).collect();
+    let problem = problem([model, &format!("\u{feff}{}", commented.join("\n"))]);
+    assert_eq!(problem.settings, self::problem(BALL).settings);
+    assert_eq!(problem.initial, self::problem(BALL).initial);
+}
+
+#[test]
 fn what_is_too_large_is_refused_and_inputs_are_not_overwritten() {
     let many = (0..30).map(|bound| format!("(x >= 3 | x >= {bound})")).collect::<Vec<_>>();
     let configuration = BALL[1].replace("x >= 10.25", &many.join(" & "));

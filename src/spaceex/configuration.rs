@@ -33,14 +33,25 @@ pub(super) struct Options {
     pub shown: Line<Vec<String>>,
 }
 
+/// A line up to the `#` of a comment, which is none between quotation marks.
+fn without_comment(line: &str) -> &str {
+    let mut is_quoted = false;
+    let begins = line.find(|character| {
+        is_quoted ^= character == '"';
+        character == '#' && !is_quoted
+    });
+    begins.map_or(line, |at| &line[..at])
+}
+
 impl Options {
     pub fn read(text: &str) -> Result<Self, SpaceExError> {
         let mut options = Options { initially: (0, vec![vec![]]), ..Options::default() };
         let mut known: Vec<(&str, usize)> = Vec::new();
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         for (line, content) in (1..).zip(text.lines()) {
             let wrong = |problem: String| SpaceExError::Configuration { line, problem };
-            let content = content.trim();
-            if content.is_empty() || content.starts_with('#') || content.starts_with(';') {
+            let content = without_comment(content).trim();
+            if content.is_empty() || content.starts_with(';') {
                 continue;
             }
             let Some((key, value)) = content.split_once('=') else {
