@@ -68,11 +68,8 @@ impl Plan {
     /// The plan as it is or, where its coordinates are larger than those of scenarios, such as the eastings and
     /// northings of a survey, moved to the origin by a whole number of units.
     fn near_the_origin(mut self) -> Self {
-        let [low, high] = [f64::min, f64::max].map(|better| {
-            let corners = self.workspace.boundary.iter().copied();
-            corners.reduce(|a, b| [0, 1].map(|axis| better(a[axis], b[axis]))).unwrap_or_default()
-        });
-        let extent = (high[0] - low[0]).max(high[1] - low[1]);
+        let boundary = &self.workspace.boundary;
+        let ([low, high], extent) = (bounds(boundary), extent(boundary));
         let farthest = low.into_iter().chain(high).map(f64::abs).fold(0.0, f64::max);
         let is_far = farthest > LARGEST_COORDINATE && farthest < FARTHEST_FLOOR * extent;
         if !is_far || extent >= LARGEST_COORDINATE {
@@ -136,6 +133,20 @@ pub enum ImportError {
         /// What is wrong, with the place.
         problem: String,
     },
+}
+
+/// The least and the greatest coordinates of a ring; 0 where it has no corner.
+fn bounds(ring: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    [f64::min, f64::max].map(|better| {
+        let corners = ring.iter().copied();
+        corners.reduce(|a, b| [0, 1].map(|axis| better(a[axis], b[axis]))).unwrap_or_default()
+    })
+}
+
+/// The larger side of the box around a ring.
+fn extent(ring: &[[f64; 2]]) -> f64 {
+    let [low, high] = bounds(ring);
+    (high[0] - low[0]).max(high[1] - low[1])
 }
 
 /// A number of things in words.

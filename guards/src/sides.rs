@@ -23,7 +23,8 @@ use crate::valuation::EvaluationError;
 /// Expressions compiled by [`Sides::compile`] to smooth ones.
 ///
 /// On the sides of a state they have the values of the expressions, but for the signs of zeros and the last
-/// digits of angles and on the lines of tables. Beyond a kink, and on a line of a table at an infinite place, they may have none.
+/// digits of angles and on the lines of tables. Beyond a kink, and on a line of a table at an infinite place,
+/// they may have none.
 ///
 /// ```
 /// use pleach_guards::{Sides, variable};

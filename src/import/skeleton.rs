@@ -1,7 +1,7 @@
 //! From a floor plan to a scenario that runs.
 
 use super::gaps;
-use super::{MapPlaces, Plan, counted};
+use super::{MapPlaces, Plan, bounds, counted, extent};
 use crate::automaton::network::Site;
 use crate::automaton::network::scenario::{
     AccessPoint, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
@@ -177,12 +177,8 @@ fn lengths_are_positive(choices: &Choices) -> Result<(), SkeletonError> {
 fn access_points_are_on_the_floor(scenario: &Scenario, site: &Site) -> Result<(), SkeletonError> {
     let places = scenario.access_point.iter().map(|access_point| access_point.position);
     let outside = places.into_iter().find(|&place| !site.workspace.contains(place.into()));
-    let corners = || scenario.workspace.boundary.iter();
-    let end = |axis: usize, better: fn(f64, f64) -> f64| {
-        corners().map(|corner| corner[axis]).reduce(better).unwrap_or_default()
-    };
     outside.map_or(Ok(()), |at| {
-        let [low, high] = [f64::min, f64::max].map(|better| [0, 1].map(|axis| end(axis, better)));
+        let [low, high] = bounds(&scenario.workspace.boundary);
         Err(SkeletonError::Outside { at, low, high })
     })
 }
@@ -314,17 +310,6 @@ impl Lattice {
         };
         1.0 - self.places.iter().filter(reached).count() as f64 / self.places.len().max(1) as f64
     }
-}
-
-fn extent(ring: &[[f64; 2]]) -> f64 {
-    let side = |axis: usize| {
-        let values = ring.iter().map(|corner| corner[axis]);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
-        high - low
-    };
-    side(0).max(side(1))
 }
 
 fn rounded(place: [f64; 2], scenario: &Scenario) -> [f64; 2] {

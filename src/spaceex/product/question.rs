@@ -9,14 +9,10 @@ use crate::spaceex::network::Instance;
 use crate::spaceex::{Initial, SpaceExError};
 use crate::verify::reach::{Directions, Forbidden, Polytope, Region, Settings, StateSet, Template};
 
-/// Whether the states where a predicate holds have a boundary that is not theirs.
-fn has_strict_comparisons(predicate: &Predicate) -> bool {
-    match predicate {
-        Predicate::Comparison(comparison) => {
-            matches!(comparison.relation, Relation::LessThan | Relation::MoreThan)
-        }
-        _ => false,
-    }
+/// Whether a predicate is a comparison that excludes its boundary.
+fn is_strict(predicate: &Predicate) -> bool {
+    use Relation::{LessThan, MoreThan};
+    matches!(predicate, Predicate::Comparison(it) if matches!(it.relation, LessThan | MoreThan))
 }
 
 impl Product<'_> {
@@ -111,7 +107,7 @@ impl Product<'_> {
             let values = self.constants.iter().filter(|(_, values)| values.width() == 0.0);
             let values = values.map(|(name, values)| (name, constant(values.midpoint())));
             let values = Substitution::new(values);
-            let strict = predicates.iter().filter(|one| has_strict_comparisons(one)).cloned();
+            let strict = predicates.iter().filter(|one| is_strict(one)).cloned();
             let condition = Predicate::all(strict).substitute(&values);
             let cuts = predicates.into_iter().filter(|one| one.variables().len() > 1);
             let cut = Predicate::all(cuts).substitute(&values);

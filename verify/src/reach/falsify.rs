@@ -65,9 +65,7 @@ pub fn falsify<'a, L: Location + Sync, E: Event + Sync, S: Coordinates>(
     settings: &Settings,
     effort: &Effort,
 ) -> Option<Counterexample> {
-    let Settings { horizon, enters_invariants, .. } = *settings;
-    let horizon = if horizon.is_finite() { horizon } else { effort.longest };
-    let search = Search { automaton, uncertain, starts: starts.into(), horizon, enters_invariants };
+    let search = Search::new(automaton, uncertain, starts.into(), settings, effort.longest);
     let (run, nearest) = search.nearest(effort, |run| nearest(run, forbidden))?;
     let Run { start, parameters, trajectory, .. } = run;
     let Nearest { forbidden, at, state, margin, holds } = nearest;

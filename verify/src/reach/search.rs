@@ -70,9 +70,8 @@ pub fn runs<'a, L: Location + Sync, E: Event + Sync, S: Coordinates>(
     count: usize,
     seed: u64,
 ) -> Vec<Run> {
-    let Settings { horizon, enters_invariants, .. } = *settings;
-    let horizon = if horizon.is_finite() { horizon } else { Effort::default().longest };
-    let search = Search { automaton, uncertain, starts: starts.into(), horizon, enters_invariants };
+    let longest = Effort::default().longest;
+    let search = Search::new(automaton, uncertain, starts.into(), settings, longest);
     let mut draws = Draws(seed);
     let cases: Vec<Choices> = (0..count).map(|_| search.drawn(&mut draws)).collect();
     sweep(&cases, |_, _| (), |case| search.run(case)).into_iter().flatten().collect()
@@ -110,7 +109,20 @@ pub(super) struct Search<'a, L, E, S> {
     pub enters_invariants: bool,
 }
 
-impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
+impl<'a, L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'a, L, E, S> {
+    /// Among runs up to the horizon of the settings or, where there is none, for `longest` seconds.
+    pub fn new(
+        automaton: &'a Automaton<L, E, S>,
+        uncertain: &'a [Uncertain],
+        starts: Starts<'a>,
+        settings: &Settings,
+        longest: f64,
+    ) -> Self {
+        let Settings { horizon, enters_invariants, .. } = *settings;
+        let horizon = if horizon.is_finite() { horizon } else { longest };
+        Search { automaton, uncertain, starts, horizon, enters_invariants }
+    }
+
     /// The nearest run that is found, as `measure` has it; `None` if no run could be made.
     pub fn nearest<N: Nearness>(
         &self,

@@ -193,10 +193,11 @@ impl Signal {
         self.knots.partition_point(|knot| knot.lead(ahead, now) < 0.0)
     }
 
-    /// When the knot `next` is `ahead` seconds ahead; never, if there is none.
-    pub fn meets(&self, next: usize, ahead: f64) -> f64 {
+    /// When, from `now` on, the knot `next` is `ahead` seconds ahead; never, if there is none. One that rounding alone
+    /// has brought together with the last one is met at the same time.
+    pub fn meets(&self, next: usize, ahead: f64, now: f64) -> f64 {
         match self.knots.get(next) {
-            Some(knot) if ahead < f64::INFINITY => knot.t - ahead,
+            Some(knot) if ahead < f64::INFINITY => (knot.t - ahead).max(now),
             _ => f64::INFINITY,
         }
     }
@@ -232,7 +233,7 @@ impl Signal {
                 _ => self.seen(next, ahead, (now, now)).first(now),
             };
             next = met.end;
-            let upcoming = self.meets(next, ahead).max(now);
+            let upcoming = self.meets(next, ahead, now);
             let flow = self.seen(next, ahead, (now, upcoming));
             result.push(Knot { t: now, value, flow: Some(flow) });
             if upcoming == f64::INFINITY {

@@ -89,9 +89,8 @@ impl Sweep<'_> {
     fn cross(&mut self, now: f64) -> f64 {
         self.left = self.signal.met(self.left, self.reach.start, now).end;
         self.right = self.signal.met(self.right, self.reach.end, now).end;
-        let left = self.signal.meets(self.left, self.reach.start);
-        // A knot that rounding alone has brought together with the last one is met at the same time.
-        left.min(self.signal.meets(self.right, self.reach.end)).max(now)
+        let left = self.signal.meets(self.left, self.reach.start, now);
+        left.min(self.signal.meets(self.right, self.reach.end, now))
     }
 
     /// What the infimum over `span` is the lowest of, until an end of the window meets a knot.
