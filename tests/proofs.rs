@@ -1,8 +1,8 @@
 //! `docs/proofs.md` names every harness, every property and every lemma, and nothing else.
 
-#[path = "../examples/planted_faults/catalogue.rs"]
+#[path = "../proofs/planted-faults/src/catalogue.rs"]
 pub mod catalogue;
-#[path = "../examples/planted_faults/rounding.rs"]
+#[path = "../proofs/planted-faults/src/rounding.rs"]
 pub mod rounding;
 
 use std::collections::BTreeSet;

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::catalogue::{CatalogueError, read};
+use super::catalogue::{CatalogueError, crate_roots, read};
 
 /// The variable of the environment with the number of the place at which rounding is left out.
 pub const CHOICE: &str = "PLEACH_UNROUNDED";
@@ -82,20 +82,11 @@ pub fn with_choices(
         }
         sources.insert(file.to_owned(), changed + &source[end..]);
     }
-    for crate_root in crate_roots(places) {
+    for crate_root in crate_roots(places.iter().map(|place| &*place.file)) {
         let source = read(root, &crate_root)? + &decision();
         sources.insert(crate_root, source);
     }
     Ok(sources)
-}
-
-/// The roots of the crates that have places.
-fn crate_roots(places: &[Rounding]) -> Vec<String> {
-    let package = |place: &Rounding| place.file.split("/src/").next().map(str::to_owned);
-    let mut roots: Vec<String> = places.iter().filter_map(package).collect();
-    roots.sort();
-    roots.dedup();
-    roots.into_iter().map(|package| format!("{package}/src/lib.rs")).collect()
 }
 
 /// The function that says whether rounding is left out at a place.

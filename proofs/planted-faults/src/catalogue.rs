@@ -1,5 +1,6 @@
 //! The faults of `proofs/faults.toml`, and where they are planted.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::{fmt, fs, io};
 
@@ -21,7 +22,7 @@ pub struct Fault {
     pub after: String,
     /// The engine that should catch it.
     pub engine: Engine,
-    /// What fails then: the arguments of `cargo`.
+    /// What fails then: the arguments of `cargo`, the last of which is a part of the names of tests.
     pub command: String,
     /// A text in the output, so that it fails for the right reason.
     pub says: String,
@@ -98,6 +99,11 @@ pub fn faults(root: &Path) -> Result<Vec<Fault>, CatalogueError> {
 }
 
 impl Fault {
+    /// The program that the command runs, and which of its tests, by a part of their names.
+    pub fn tests(&self) -> (&str, &str) {
+        self.command.rsplit_once(' ').unwrap_or((&self.command, ""))
+    }
+
     /// The file below `root` as it is with the fault.
     ///
     /// # Errors
@@ -120,4 +126,10 @@ impl Fault {
 pub fn read(root: &Path, path: &str) -> Result<String, CatalogueError> {
     fs::read_to_string(root.join(path))
         .map_err(|source| CatalogueError::File { path: path.to_owned(), source })
+}
+
+/// The roots of the crates that have these files.
+pub fn crate_roots<'a>(files: impl Iterator<Item = &'a str>) -> BTreeSet<String> {
+    let package = |file: &str| file.split_once("src/").map(|(package, _)| package.to_owned());
+    files.filter_map(package).map(|package| format!("{package}src/lib.rs")).collect()
 }
