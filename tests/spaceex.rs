@@ -445,6 +445,29 @@ fn what_is_too_large_is_refused_and_inputs_are_not_overwritten() {
     assert_eq!(std::fs::read_to_string(model).expect("it is there"), BALL[0]);
 }
 
+/// What cannot be written is told before the runs are enclosed, which may take long; numbers below 0 are numbers.
+#[test]
+fn outputs_are_tried_and_numbers_below_zero_read_before_anything_is_enclosed() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let nowhere = folder.join("no/such/folder/set.svg");
+    let nowhere = nowhere.to_str().expect("it is text");
+    let ball = ["tests/spaceex/bouncing-ball.xml", "--cfg", "tests/spaceex/bouncing-ball.cfg"];
+    let said = |more: &[&str]| {
+        let output = pleach(&[&["reach"], &ball[..], more].concat());
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    for option in ["--svg", "--json"] {
+        let said = said(&[option, nowhere, "--step", "0"]);
+        assert!(said.contains("set.svg: cannot be created"), "{said}");
+    }
+    let kept = folder.join("kept.json");
+    std::fs::write(&kept, "{}").expect("it can be written");
+    let said = said(&["--json", kept.to_str().expect("it is text"), "--step", "-1"]);
+    assert!(said.contains("`step` is -1, and has to be a duration above 0"), "{said}");
+    assert_eq!(std::fs::read_to_string(&kept).expect("it is there"), "{}");
+}
+
 /// Locations of one name are told apart by their ids.
 #[test]
 fn locations_of_one_name_are_told_apart() {
