@@ -445,6 +445,38 @@ fn what_is_too_large_is_refused_and_inputs_are_not_overwritten() {
     assert_eq!(std::fs::read_to_string(model).expect("it is there"), BALL[0]);
 }
 
+/// Whichever way `initially` is written, no run begins beyond it: one that did was taken for a counterexample.
+#[test]
+fn all_comparisons_of_initially_bound_where_runs_begin() {
+    let ball = |more: &str, forbidden: &str| {
+        let begin = "10 <= x & x <= 10.2 & 0 <= v & v <= 0.1 & ";
+        BALL[1]
+            .replace("10 <= x <= 10.2 & v == 0 & ", &format!("{begin}{more} & "))
+            .replace("x >= 10.25", forbidden)
+    };
+    for more in
+        ["x <= 10.05", "2*x <= 20.1", "x - 10 <= 0.05", "10.05 >= x + v", "5 > 3 & -x >= -10.05"]
+    {
+        assert_eq!(
+            verdict(&problem([BALL[0], &ball(more, "x >= 10.15")])),
+            Verdict::Holds,
+            "{more}"
+        );
+        assert_eq!(
+            verdict(&problem([BALL[0], &ball(more, "x >= 10.02 & v > -0.5")])),
+            Verdict::Violated,
+            "{more}"
+        );
+    }
+    // No set of states ends where this does: nothing is proved, and no run begins beyond it.
+    let curved = ball("x*x + v*v <= 101", "x >= 10.15");
+    assert_eq!(verdict(&problem([BALL[0], &curved])), Verdict::Undecided);
+    for none in ["false", "5 <= 3", "2*x <= 19", "x*x <= 99"] {
+        let said = refusal(BALL[0], &ball(none, "x >= 10.15"));
+        assert!(said.contains("`initially` allows no state"), "{none}: {said}");
+    }
+}
+
 /// What cannot be written is told before the runs are enclosed, which may take long; numbers below 0 are numbers.
 #[test]
 fn outputs_are_tried_and_numbers_below_zero_read_before_anything_is_enclosed() {
