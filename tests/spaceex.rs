@@ -6,6 +6,7 @@ use pleach::guards::Interval;
 use pleach::spaceex::{self, Problem, Verdict};
 use pleach::verify::reach::{Completion, Directions, Effort};
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 const BALL: [&str; 2] =
     [include_str!("spaceex/bouncing-ball.xml"), include_str!("spaceex/bouncing-ball.cfg")];
@@ -498,6 +499,24 @@ fn outputs_are_tried_and_numbers_below_zero_read_before_anything_is_enclosed() {
     let said = said(&["--json", kept.to_str().expect("it is text"), "--step", "-1"]);
     assert!(said.contains("`step` is -1, and has to be a duration above 0"), "{said}");
     assert_eq!(std::fs::read_to_string(&kept).expect("it is there"), "{}");
+}
+
+/// The time to read a model grows with its length, and not with its square.
+#[test]
+fn a_model_of_many_lines_is_read_in_a_moment() {
+    let mut model =
+        String::from("<sspaceex><component id=\"s\"><param name=\"x\" type=\"real\"/>\n");
+    for id in 0..2000 {
+        let flow = "<invariant>x &lt;= 9 &amp; x &gt;= -9</invariant>\n<flow>x' == 1</flow>";
+        model += &format!("<location id=\"{id}\" name=\"at {id}\">\n{flow}\n</location>\n");
+    }
+    for _ in 0..40_000 {
+        model += "<note>\n</note>\n";
+    }
+    let begin = Instant::now();
+    let said = refusal(&format!("{model}<other/>"), BALL[1]);
+    assert!(said.starts_with("line 88002 of the model: <other> stands in <component>"), "{said}");
+    assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
 }
 
 /// Locations of one name are told apart by their ids.
