@@ -10,7 +10,7 @@ use std::io::BufRead;
 
 use thiserror::Error;
 
-use crate::automaton::network::record::{End, MissionEvent};
+use crate::automaton::network::record::{End, MissionEvent, Snapshot};
 use crate::automaton::network::scenario::{InvalidScenario, ValidScenario};
 use crate::discrete::network::activity::may_follow;
 use crate::trace::{TraceEntry, TraceError, TraceReader};
@@ -51,9 +51,8 @@ pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
     let scenario = ValidScenario::new(trace.scenario().clone())?;
     let mut reading = Reading {
         judge: Referee::new(&scenario, trace.faults(), may_follow),
-        now: Instant { step: 0, time: 0.0 },
+        order: Order::new(),
         periods: 0,
-        events: Vec::new(),
         end: None,
     };
     for entry in trace {
@@ -67,38 +66,27 @@ pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
 /// A trace that is being read.
 struct Reading<'a> {
     judge: Referee<'a>,
-    /// The last step.
-    now: Instant,
+    order: Order,
     periods: usize,
-    /// The events since then, each with the step for which it is recorded.
-    events: Vec<(usize, MissionEvent)>,
     end: Option<End>,
 }
 
 impl Reading<'_> {
     fn take(&mut self, entry: TraceEntry) -> Result<(), Violation> {
-        if self.end.is_some() {
-            return Err(self.fault(Property::Record, "the trace goes on after its end"));
+        let (told, fault) = self.order.next(entry);
+        if let Some(fault) = fault {
+            return Err(fault);
         }
-        match entry {
-            TraceEntry::Event { step, event } => self.events.push((step, event)),
-            TraceEntry::Step(snapshot) => {
-                self.now = Instant::of(&snapshot);
+        match told {
+            Some(Told::Period(snapshot, events)) => {
                 self.periods += 1;
-                if let Some((step, _)) = self.events.iter().find(|(k, _)| *k != snapshot.step) {
-                    let sentence = format!("an event of step {step} stands before this step");
-                    return Err(self.fault(Property::Record, &sentence));
-                }
-                let events: Vec<_> = self.events.drain(..).map(|(_, event)| event).collect();
                 self.judge.observe(&snapshot, &events)?;
             }
-            TraceEntry::End(end) => {
-                if !self.events.is_empty() {
-                    return Err(self.fault(Property::Record, "events stand after the last step"));
-                }
+            Some(Told::End(end)) => {
                 self.judge.conclude(&end)?;
                 self.end = Some(end);
             }
+            None => {}
         }
         Ok(())
     }
@@ -109,13 +97,72 @@ impl Reading<'_> {
                 let extremes = self.judge.extremes().clone();
                 Verdict::Sound { periods: self.periods, end: Box::new(end), extremes }
             }
-            None => Verdict::Violated(
-                self.fault(Property::Outcome, "the trace breaks off: it does not say how it ends"),
-            ),
+            None => Verdict::Violated(self.order.fault(
+                Property::Outcome,
+                "the trace breaks off: it does not say how it ends".to_owned(),
+            )),
         }
     }
+}
 
-    fn fault(&self, property: Property, sentence: &str) -> Violation {
-        self.now.violation(property, &[], (0.0, 1.0), sentence.to_owned())
+/// What a trace tells, one after the other.
+pub(crate) enum Told {
+    /// A control period: the snapshot with which it ends, and its events.
+    Period(Box<Snapshot>, Vec<MissionEvent>),
+    /// How the mission ended.
+    End(End),
+}
+
+/// The order of the entries of a trace: events stand before the step for which they are recorded, and the end is
+/// the last of all.
+pub(crate) struct Order {
+    /// The last step.
+    now: Instant,
+    /// The events since then, each with the step for which it is recorded.
+    events: Vec<(usize, MissionEvent)>,
+    has_ended: bool,
+}
+
+impl Order {
+    /// That of a trace of which nothing is read.
+    pub fn new() -> Self {
+        Order { now: Instant { step: 0, time: 0.0 }, events: Vec::new(), has_ended: false }
+    }
+
+    /// Takes the next entry: what is told with it, and the fault if it stands where it does not belong.
+    pub fn next(&mut self, entry: TraceEntry) -> (Option<Told>, Option<Violation>) {
+        let after_end = self.has_ended.then(|| "the trace goes on after its end".to_owned());
+        let before = self.now;
+        let (told, misplaced) = match entry {
+            TraceEntry::Event { step, event } => {
+                self.events.push((step, event));
+                (None, None)
+            }
+            TraceEntry::Step(snapshot) => {
+                self.now = Instant::of(&snapshot);
+                let other = self.events.iter().find(|(step, _)| *step != snapshot.step);
+                let misplaced = other
+                    .map(|(step, _)| format!("an event of step {step} stands before this step"));
+                let events = self.events.drain(..).map(|(_, event)| event).collect();
+                (Some(Told::Period(snapshot, events)), misplaced)
+            }
+            TraceEntry::End(end) => {
+                self.has_ended = true;
+                let is_late = !self.events.is_empty();
+                let misplaced = is_late.then(|| "events stand after the last step".to_owned());
+                (Some(Told::End(end)), misplaced)
+            }
+        };
+        let fault = match (after_end, misplaced) {
+            (Some(sentence), _) => {
+                Some(before.violation(Property::Record, &[], (0.0, 1.0), sentence))
+            }
+            (None, misplaced) => misplaced.map(|sentence| self.fault(Property::Record, sentence)),
+        };
+        (told, fault)
+    }
+
+    fn fault(&self, property: Property, sentence: String) -> Violation {
+        self.now.violation(property, &[], (0.0, 1.0), sentence)
     }
 }

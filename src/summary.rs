@@ -213,7 +213,8 @@ impl Watcher for Summary {
                 task.holder = Some(robot);
             }
         }
-        (self.periods, self.seconds) = (snapshot.step + 1, snapshot.time + self.settings.period);
+        self.periods = snapshot.step.saturating_add(1);
+        self.seconds = snapshot.time + self.settings.period;
         Ok(())
     }
 }

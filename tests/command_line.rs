@@ -81,6 +81,21 @@ fn a_trace_that_cannot_be_written_ends_with_status_2() {
     assert!(said.contains("no/such/folder/t.jsonl: cannot be created"), "{said}");
 }
 
+/// One file by two names, before it is there.
+#[test]
+fn two_outputs_do_not_go_to_one_file() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("one-place");
+    std::fs::create_dir_all(&folder).unwrap();
+    let table = folder.join("table.csv");
+    let again = folder.join("../one-place/table.csv");
+    let [table, again] = [&table, &again].map(|path| path.to_str().unwrap());
+    let _ = std::fs::remove_file(table);
+    let run = ["run", "scenarios/too-few.toml", "--no-figures", "-q", "--csv", table, "--json"];
+    let output = pleach(&[&run[..], &[again]].concat());
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(said(&output.stderr).contains("would take the place of another file"), "{output:?}");
+}
+
 #[test]
 fn a_task_out_of_reach_ends_with_status_3_and_the_same_trace_every_time() {
     let run = |trace: &Path| {

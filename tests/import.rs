@@ -407,6 +407,13 @@ fn maps_that_are_none_are_refused() {
         ("c.yaml", "image: none.png\nresolution: 0.05\n", "none.png: cannot be read"),
         ("d.yaml", "resolution: 0.05\n", "image is missing"),
         ("e.geojson", "{}", "e.geojson: "),
+        (
+            "n.geojson",
+            r#"{"type": "Feature", "properties": {"kind": "wall"}, "geometry":
+                {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}}"#,
+            "no floor: the map has no polygon but walls",
+        ),
+        ("o.yaml", "image: o.pgm\nresolution: 1\norigin: [nan, 0, 0]\n", "origin: \"nan, 0, 0\""),
         ("f.svg", "<svg><path d='M0,0 Q1'/></svg>", "path: "),
         ("g.svg", "<svg></svg>", "no floor"),
         ("i.svg", "<svg><rect width='9' height='9' transform='scale(0)'/></svg>", "no floor"),
@@ -421,6 +428,28 @@ fn maps_that_are_none_are_refused() {
         let error = import::read(&path, &Reading::default()).unwrap_err().to_string();
         assert!(error.contains(said), "{name}: {error}");
     }
+}
+
+/// A wall whose ring is left open keeps all its corners: without one of them, robots would get through.
+#[test]
+fn a_ring_that_is_left_open_is_closed() {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("open.geojson");
+    let map = |last: &str| {
+        let polygon = |kind: &str, to: u32| {
+            format!(
+                r#"{{"type": "Feature", "properties": {{"kind": "{kind}"}}, "geometry": {{"type": "Polygon",
+                    "coordinates": [[[0, 0], [{to}, 0], [{to}, {to}], [0, {to}]{last}]]}}}}"#
+            )
+        };
+        let features = [polygon("floor", 9), polygon("wall", 4)].join(", ");
+        std::fs::write(
+            &path,
+            format!(r#"{{"type": "FeatureCollection", "features": [{features}]}}"#),
+        )
+        .unwrap();
+        import::read(&path, &Reading { planar: true, ..Reading::default() }).unwrap()
+    };
+    assert_eq!(map(""), map(", [0, 0]"));
 }
 
 #[test]

@@ -31,6 +31,7 @@ mod import;
 mod layering;
 mod medium;
 mod outcomes;
+mod pages;
 mod proofs;
 mod proven;
 mod public_api;

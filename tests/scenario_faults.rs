@@ -52,6 +52,39 @@ fn the_scenario_without_the_mistake_is_read() {
     assert_eq!(scenario.robot[1].rate, 0.075);
 }
 
+/// A value that is set does not stand in the text, and nothing in the text is wrong.
+#[test]
+fn a_number_that_is_too_large_is_told_with_its_place() {
+    let text = std::fs::read_to_string("tests/scenarios/room.toml").unwrap();
+    let error = |setting: &str| {
+        let setting: Setting = setting.parse().unwrap();
+        parse_with(&text, Path::new("room.toml"), &[setting]).unwrap_err().to_string()
+    };
+    for (setting, said) in [
+        ("control.period=1e400", "control.period: the number 1e400 is too large: "),
+        ("task[0].position=[-1e999, 0]", "task[0].position[0]: the number -1e999 is too large: "),
+        ("link.max_range=9223372036854775808", "link.max_range: the whole number 92233"),
+    ] {
+        let error = error(setting);
+        assert!(error.starts_with(&format!("room.toml with {setting}: {said}")), "{error}");
+    }
+    let replaced = text.replacen("max_range = ", "max_range = 1e400 # ", 1);
+    let line = 1 + replaced.lines().position(|line| line.contains("1e400")).unwrap();
+    let error = parse(&replaced, Path::new("room.toml")).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("room.toml:{line}:13: link.max_range: ")), "{error}");
+}
+
+/// TOML has four bases.
+#[test]
+fn whole_numbers_may_be_written_in_any_base() {
+    let text = std::fs::read_to_string("tests/scenarios/room.toml").unwrap();
+    for count in ["100", "1_00", "+100", "0x64", "0o144", "0b1100100"] {
+        let setting: Setting = format!("control.max_steps={count}").parse().unwrap();
+        let scenario = parse_with(&text, Path::new("room.toml"), &[setting]).unwrap();
+        assert_eq!(scenario.settings().max_steps, 100, "{count}");
+    }
+}
+
 /// No number of a scenario may be anything but finite, wherever it stands.
 #[test]
 fn every_number_of_a_scenario_must_be_finite() {

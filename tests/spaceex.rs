@@ -6,6 +6,7 @@ use pleach::guards::Interval;
 use pleach::spaceex::{self, Problem, Verdict};
 use pleach::verify::reach::{Completion, Directions, Effort};
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 const BALL: [&str; 2] =
     [include_str!("spaceex/bouncing-ball.xml"), include_str!("spaceex/bouncing-ball.cfg")];
@@ -443,6 +444,79 @@ fn what_is_too_large_is_refused_and_inputs_are_not_overwritten() {
         pleach(&["reach", model, "--cfg", "tests/spaceex/bouncing-ball.cfg", "--svg", model]);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(std::fs::read_to_string(model).expect("it is there"), BALL[0]);
+}
+
+/// Whichever way `initially` is written, no run begins beyond it: one that did was taken for a counterexample.
+#[test]
+fn all_comparisons_of_initially_bound_where_runs_begin() {
+    let ball = |more: &str, forbidden: &str| {
+        let begin = "10 <= x & x <= 10.2 & 0 <= v & v <= 0.1 & ";
+        BALL[1]
+            .replace("10 <= x <= 10.2 & v == 0 & ", &format!("{begin}{more} & "))
+            .replace("x >= 10.25", forbidden)
+    };
+    for more in
+        ["x <= 10.05", "2*x <= 20.1", "x - 10 <= 0.05", "10.05 >= x + v", "5 > 3 & -x >= -10.05"]
+    {
+        assert_eq!(
+            verdict(&problem([BALL[0], &ball(more, "x >= 10.15")])),
+            Verdict::Holds,
+            "{more}"
+        );
+        assert_eq!(
+            verdict(&problem([BALL[0], &ball(more, "x >= 10.02 & v > -0.5")])),
+            Verdict::Violated,
+            "{more}"
+        );
+    }
+    // No set of states ends where this does: nothing is proved, and no run begins beyond it.
+    let curved = ball("x*x + v*v <= 101", "x >= 10.15");
+    assert_eq!(verdict(&problem([BALL[0], &curved])), Verdict::Undecided);
+    for none in ["false", "5 <= 3", "2*x <= 19", "x*x <= 99"] {
+        let said = refusal(BALL[0], &ball(none, "x >= 10.15"));
+        assert!(said.contains("`initially` allows no state"), "{none}: {said}");
+    }
+}
+
+/// What cannot be written is told before the runs are enclosed, which may take long; numbers below 0 are numbers.
+#[test]
+fn outputs_are_tried_and_numbers_below_zero_read_before_anything_is_enclosed() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let nowhere = folder.join("no/such/folder/set.svg");
+    let nowhere = nowhere.to_str().expect("it is text");
+    let ball = ["tests/spaceex/bouncing-ball.xml", "--cfg", "tests/spaceex/bouncing-ball.cfg"];
+    let said = |more: &[&str]| {
+        let output = pleach(&[&["reach"], &ball[..], more].concat());
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    for option in ["--svg", "--json"] {
+        let said = said(&[option, nowhere, "--step", "0"]);
+        assert!(said.contains("set.svg: cannot be created"), "{said}");
+    }
+    let kept = folder.join("kept.json");
+    std::fs::write(&kept, "{}").expect("it can be written");
+    let said = said(&["--json", kept.to_str().expect("it is text"), "--step", "-1"]);
+    assert!(said.contains("`step` is -1, and has to be a duration above 0"), "{said}");
+    assert_eq!(std::fs::read_to_string(&kept).expect("it is there"), "{}");
+}
+
+/// The time to read a model grows with its length, and not with its square.
+#[test]
+fn a_model_of_many_lines_is_read_in_a_moment() {
+    let mut model =
+        String::from("<sspaceex><component id=\"s\"><param name=\"x\" type=\"real\"/>\n");
+    for id in 0..2000 {
+        let flow = "<invariant>x &lt;= 9 &amp; x &gt;= -9</invariant>\n<flow>x' == 1</flow>";
+        model += &format!("<location id=\"{id}\" name=\"at {id}\">\n{flow}\n</location>\n");
+    }
+    for _ in 0..40_000 {
+        model += "<note>\n</note>\n";
+    }
+    let begin = Instant::now();
+    let said = refusal(&format!("{model}<other/>"), BALL[1]);
+    assert!(said.starts_with("line 88002 of the model: <other> stands in <component>"), "{said}");
+    assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
 }
 
 /// Locations of one name are told apart by their ids.

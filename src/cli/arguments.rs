@@ -87,7 +87,7 @@ pub enum Command {
     ///
     /// The page is one self-contained HTML file: the plan with robots, links and tree at every
     /// control period, curves, the story and a summary. An incomplete trace is shown as far as it
-    /// goes.
+    /// goes. If `pleach judge` finds a violation, it is the headline of the page.
     Page(PageArguments),
     /// Decide whether any run of a SpaceEx model reaches forbidden states
     ///

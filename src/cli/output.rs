@@ -53,11 +53,10 @@ pub fn check_places<'a>(
     inputs: impl IntoIterator<Item = &'a PathBuf>,
     outputs: impl IntoIterator<Item = &'a PathBuf>,
 ) -> Result<(), Failure> {
-    let place = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let inputs = inputs.into_iter().filter(|path| path.is_file());
-    let mut taken: Vec<PathBuf> = inputs.map(|path| place(path)).collect();
+    let mut taken: Vec<PathBuf> = inputs.map(|path| place_of(path)).collect();
     for output in outputs.into_iter().filter(|path| path.is_file() || !path.exists()) {
-        let here = place(output);
+        let here = place_of(output);
         if taken.contains(&here) {
             let what = "would take the place of another file of this call; choose another path";
             return Err(Failure::Usage(format!("what goes to {} {what}", output.display())));
@@ -65,6 +64,23 @@ pub fn check_places<'a>(
         taken.push(here);
     }
     Ok(())
+}
+
+/// The place that a path names, by which it is known again: also that of a file that is not there yet.
+fn place_of(path: &Path) -> PathBuf {
+    let folder = path.parent().map(|folder| if folder == "" { Path::new(".") } else { folder });
+    let in_folder = || Some(fs::canonicalize(folder?).ok()?.join(path.file_name()?));
+    fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
+}
+
+/// Whether a file can be written, or for `-` the standard output: told before what takes long, and without a change
+/// of what is in it.
+pub fn check(path: &Path) -> Result<(), Failure> {
+    if source::is_standard(path) {
+        return Ok(());
+    }
+    let file = File::options().append(true).create(true).open(path);
+    file.map(drop).map_err(|source| Failure::Creation { path: path.to_owned(), source })
 }
 
 fn standard() -> Named<io::StdoutLock<'static>> {

@@ -16,6 +16,7 @@ use super::status::{Failure, Status};
 
 /// The arguments of `pleach reach`.
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub struct ReachArguments {
     /// The model, an XML file of SpaceEx
     pub model: PathBuf,
@@ -71,6 +72,7 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
     problem.settings.clusters = arguments.clusters.unwrap_or(problem.settings.clusters);
     let draws = arguments.svg.is_some() || arguments.axes.is_some();
     let axes = draws.then(|| axes(&problem, arguments.axes.as_deref())).transpose()?;
+    arguments.svg.iter().chain(&arguments.json).try_for_each(|path| output::check(path))?;
     let begin = Instant::now();
     let solution = solve(&problem, arguments.quiet)?;
     let seconds = begin.elapsed().as_secs_f64();

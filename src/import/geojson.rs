@@ -32,6 +32,9 @@ pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
             features.iter().for_each(|feature| found.add_feature(feature));
         }
     }
+    if found.floors.iter().all(Vec::is_empty) {
+        return Err("no floor: the map has no polygon but walls".into());
+    }
     let mut notes = Vec::new();
     let projection = match reading.planar {
         true => None,
@@ -106,10 +109,13 @@ impl Found {
     }
 
     fn add_polygon(&mut self, polygon: &[Vec<Position>], kind: &str) {
-        // GeoJSON closes its rings.
+        // GeoJSON closes its rings; of one that is left open no corner may be lost.
         let ring = |positions: &Vec<Position>| {
-            let count = positions.len().saturating_sub(1);
-            positions[..count].iter().filter_map(point).collect::<Ring>()
+            let mut ring: Ring = positions.iter().filter_map(point).collect();
+            if ring.len() > 1 && ring.first() == ring.last() {
+                ring.pop();
+            }
+            ring
         };
         let rings = oriented(polygon.iter().map(ring).collect());
         match kind {

@@ -136,9 +136,10 @@ impl Keys {
     /// Where the lower left corner lies, and by how much the map is turned; 0 by default.
     fn origin(&self) -> Result<[f64; 3], String> {
         let Ok(text) = self.text("origin") else { return Ok([0.0; 3]) };
-        let numbers: Result<Vec<f64>, _> =
-            text.split(',').map(|part| part.trim().parse()).collect();
-        (numbers.ok().and_then(|numbers| numbers.try_into().ok()))
+        let number =
+            |part: &str| part.trim().parse().ok().filter(|number: &f64| number.is_finite());
+        let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+        (numbers.and_then(|numbers| numbers.try_into().ok()))
             .ok_or_else(|| format!("origin: {text:?} is no list of three numbers [x, y, yaw]"))
     }
 }

@@ -132,6 +132,10 @@ impl Watcher for MissionPage {
     }
 
     fn end(&mut self, end: &End) -> io::Result<()> {
+        // That a run was stopped for a violation is its outcome, and no finding of the judge.
+        if end.outcome != Outcome::InvariantViolated && self.violation.is_none() {
+            self.violation = self.judge.conclude(end).err();
+        }
         self.end = Some(end.clone());
         Ok(())
     }
@@ -139,6 +143,11 @@ impl Watcher for MissionPage {
 
 /// What a step shows beside its line in the trace.
 impl MissionPage {
+    /// Takes what is wrong with the order of the record; only what is found first counts.
+    pub(super) fn note(&mut self, fault: Option<Violation>) {
+        self.violation = self.violation.take().or(fault);
+    }
+
     /// Observes a control period; also says how near robots are to each other and to walls.
     pub(crate) fn take_in(
         &mut self,
@@ -194,10 +203,24 @@ impl MissionPage {
 
 /// The summary.
 impl MissionPage {
+    /// How the run ended, or what is wrong with its record unless the run says itself that it was stopped for that.
     fn outcome(&self) -> Shown {
         let serviced = self.summary.serviced();
         let tally = format!("{serviced} of {} tasks serviced", self.scenario.task.len());
         let periods = self.steps.count();
+        if let Some(violation) = &self.violation
+            && self.end.as_ref().is_none_or(|end| end.outcome != Outcome::InvariantViolated)
+        {
+            let said = match &self.end {
+                Some(end) => format!("the run says: {}", end.outcome.name().replace('_', " ")),
+                None => "the trace stops without an outcome".to_owned(),
+            };
+            return Shown {
+                class: "bad",
+                headline: "violated".to_owned(),
+                text: format!("{violation}; {said}, {tally} in {periods} control periods"),
+            };
+        }
         match &self.end {
             Some(end) if end.outcome == Outcome::Serviced => Shown {
                 class: "good",

@@ -5,7 +5,7 @@
 
 use crate::automaton::network::scenario::{CONTROL, KeyPath, LinkModel, MOST_PERIODS, Values};
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue};
+use toml::de::{DeArray, DeFloat, DeInteger, DeTable, DeValue};
 
 /// What a value looks like.
 #[derive(Clone, Copy)]
@@ -126,11 +126,23 @@ struct Comparison {
 impl Comparison {
     fn value(&mut self, key: &KeyPath, value: &Spanned<DeValue<'_>>, shape: &Shape) {
         match (value.get_ref(), shape) {
-            (DeValue::String(_), Shape::Text)
-            | (DeValue::Float(_) | DeValue::Integer(_), Shape::Number) => {}
+            (DeValue::String(_), Shape::Text) => {}
+            (DeValue::Float(digits), Shape::Number) if !overflows(digits) => {}
+            (DeValue::Integer(digits), Shape::Number) if whole(digits).is_some() => {}
             // What is too small is told with what else the values are held against.
             (DeValue::Integer(digits), Shape::Count(_, most))
-                if digits.to_string().parse::<u64>().is_ok_and(|count| count <= *most) => {}
+                if whole(digits).is_some_and(|count| {
+                    u64::try_from(count).is_ok_and(|count| count <= *most)
+                }) => {}
+            (DeValue::Float(_) | DeValue::Integer(_), Shape::Number) => {
+                let message = format!(
+                    "{} is too large: write one up to {:e}, those from {:e} on with a point or an exponent",
+                    spoken(value.get_ref()),
+                    f64::MAX,
+                    i64::MAX as f64
+                );
+                self.found.push(Departure { key: key.clone(), span: value.span(), message });
+            }
             (DeValue::String(text), Shape::OneOf(choices)) if choices.contains(&text.as_ref()) => {}
             (DeValue::Array(numbers), Shape::Point) => self.point(key, value.span(), numbers),
             (DeValue::Array(elements), Shape::ListOf(shape)) => {
@@ -217,6 +229,17 @@ impl Shape {
             }
         }
     }
+}
+
+/// A whole number, in whichever base it is written, if it is one of TOML.
+fn whole(digits: &DeInteger<'_>) -> Option<i64> {
+    i64::from_str_radix(digits.as_str(), digits.radix()).ok()
+}
+
+/// Whether a number with a point or an exponent is larger than those of 64 bits.
+fn overflows(digits: &DeFloat<'_>) -> bool {
+    let is_infinite = digits.as_str().parse().is_ok_and(f64::is_infinite);
+    is_infinite && !digits.as_str().contains("inf")
 }
 
 /// A value as one would say it.

@@ -204,6 +204,17 @@ fn side(text: &str) -> Result<Side, String> {
 }
 
 impl Relation {
+    /// The same between the sides in the other order.
+    pub fn turned(self) -> Self {
+        match self {
+            Relation::AtMost => Relation::AtLeast,
+            Relation::LessThan => Relation::MoreThan,
+            Relation::AtLeast => Relation::AtMost,
+            Relation::MoreThan => Relation::LessThan,
+            Relation::Equal | Relation::Assigned => self,
+        }
+    }
+
     /// As a predicate; equality as two comparisons.
     pub fn predicate(self, left: &Expression, right: &Expression) -> Predicate {
         match self {

@@ -64,7 +64,8 @@ pub struct Initial {
     pub locations: Vec<String>,
     /// The states, over the coordinates and the parameters that do not vary.
     pub states: StateSet,
-    /// The strict comparisons that hold of them: of these the states hold the boundary, too.
+    /// The comparisons that hold of them and are strict or not affine: of the former the states hold the boundary,
+    /// too, of the latter what is beyond.
     pub condition: Predicate,
 }
 

@@ -275,7 +275,7 @@ impl Instance<'_> {
                     (name.clone(), relation, value.clone())
                 }
                 (Side::Formula(value), Side::Primed(name)) => {
-                    (name.clone(), turned(relation), value.clone())
+                    (name.clone(), relation.turned(), value.clone())
                 }
                 (Side::Formula(Expression::Variable(name)), Side::Formula(value))
                     if matches!(relation, Relation::Assigned | Relation::Equal) =>
@@ -339,14 +339,4 @@ pub(super) enum Assigned {
     Value(Expression),
     /// Between two values.
     Within(Option<Expression>, Option<Expression>),
-}
-
-fn turned(relation: Relation) -> Relation {
-    match relation {
-        Relation::AtMost => Relation::AtLeast,
-        Relation::LessThan => Relation::MoreThan,
-        Relation::AtLeast => Relation::AtMost,
-        Relation::MoreThan => Relation::LessThan,
-        other => other,
-    }
 }

@@ -26,10 +26,13 @@ const SINGLE: [&str; 5] = ["invariant", "flow", "label", "guard", "assignment"];
 /// The components of a file, in their order.
 pub(in crate::spaceex) fn read(text: &str) -> Result<Vec<Component>, SpaceExError> {
     let mut reader = Reader::from_str(text);
-    let mut document = Document::default();
+    let mut document = Document { line: 1, ..Document::default() };
+    let mut counted = 0;
     loop {
         let at = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
-        document.line = 1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count();
+        let passed = &text.as_bytes()[counted..at.clamp(counted, text.len())];
+        document.line += passed.iter().filter(|byte| **byte == b'\n').count();
+        counted += passed.len();
         match reader.read_event().map_err(|error| document.wrong(error.to_string()))? {
             Event::Eof => return document.end(),
             Event::Start(element) => document.open(&element)?,

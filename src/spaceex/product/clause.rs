@@ -1,6 +1,6 @@
 //! What clauses say: as predicates, and as bounds on one variable.
 
-use crate::guards::{Expression, Interval, Predicate};
+use crate::guards::{Interval, Predicate};
 use crate::spaceex::formula::{Clause, Relation, Side};
 
 /// A clause as a predicate; nothing for one about locations.
@@ -21,33 +21,29 @@ pub(super) fn predicate(clause: &Clause) -> Result<Option<Predicate>, String> {
     })
 }
 
-/// Between which numbers clauses keep a variable, over all alternatives.
+/// The bound that a clause puts on a single variable, which stands alone on its side: variable, relation and number.
+pub(super) fn bound(clause: &Clause) -> Option<(&str, Relation, f64)> {
+    let Clause::Compare { left, relation, right } = clause else { return None };
+    let number = |side: &Side| match side {
+        Side::Formula(formula) => formula.evaluate(&()).ok().filter(|value| !value.is_nan()),
+        Side::Primed(_) => None,
+    };
+    match (left.name(), right.name()) {
+        (Some(name), _) => Some((name, *relation, number(right)?)),
+        (None, Some(name)) => Some((name, relation.turned(), number(left)?)),
+        (None, None) => None,
+    }
+}
+
+/// Between which numbers clauses keep a variable, over all alternatives; clauses that are no
+/// [`bound`] on it do not count.
 pub(super) fn fixed(alternatives: &[Vec<Clause>], name: &str) -> Option<Interval> {
     let within = |clauses: &Vec<Clause>| -> Option<Interval> {
         let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
-        for clause in clauses {
-            let Clause::Compare {
-                left: Side::Formula(left),
-                relation,
-                right: Side::Formula(right),
-            } = clause
-            else {
+        for (own, relation, value) in clauses.iter().filter_map(bound) {
+            if own != name {
                 continue;
-            };
-            let is_name =
-                |side: &Expression| matches!(side, Expression::Variable(own) if **own == *name);
-            let (value, relation) = match (left.evaluate(&()), right.evaluate(&())) {
-                (_, Ok(value)) if is_name(left) => (value, *relation),
-                (Ok(value), _) if is_name(right) => (
-                    value,
-                    match relation {
-                        Relation::AtMost | Relation::LessThan => Relation::AtLeast,
-                        Relation::AtLeast | Relation::MoreThan => Relation::AtMost,
-                        equal => *equal,
-                    },
-                ),
-                _ => continue,
-            };
+            }
             match relation {
                 Relation::AtMost | Relation::LessThan => upper = upper.min(value),
                 Relation::AtLeast | Relation::MoreThan => lower = lower.max(value),

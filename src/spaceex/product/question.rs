@@ -1,6 +1,6 @@
 //! Where runs begin, where they must not come, and for how long.
 
-use super::clause::{fixed, predicate};
+use super::clause::{bound, fixed, predicate};
 use super::{Product, Result, location_name};
 use crate::guards::{Expression, Predicate, Relation, Substitution, constant};
 use crate::spaceex::configuration::{Bounded, Options};
@@ -100,16 +100,18 @@ impl Product<'_> {
                     ))
                 })?);
             }
-            // Comparisons of several variables cut the box.
-            let predicates = clauses.iter().filter_map(|clause| predicate(clause).transpose());
-            let predicates =
-                predicates.collect::<std::result::Result<Vec<_>, _>>().map_err(wrong)?;
+            let states_of = |clauses: &mut dyn Iterator<Item = &Clause>| {
+                let predicates = clauses.filter_map(|clause| predicate(clause).transpose());
+                predicates.collect::<std::result::Result<Vec<_>, _>>().map_err(wrong)
+            };
             let values = self.constants.iter().filter(|(_, values)| values.width() == 0.0);
             let values = values.map(|(name, values)| (name, constant(values.midpoint())));
             let values = Substitution::new(values);
-            let strict = predicates.iter().filter(|one| is_strict(one)).cloned();
-            let condition = Predicate::all(strict).substitute(&values);
-            let cuts = predicates.into_iter().filter(|one| one.variables().len() > 1);
+            let mut strict = states_of(&mut clauses.iter())?;
+            strict.retain(is_strict);
+            let strict = Predicate::all(strict).substitute(&values);
+            // All but the sides of the box cut it.
+            let cuts = states_of(&mut clauses.iter().filter(|clause| bound(clause).is_none()))?;
             let cut = Predicate::all(cuts).substitute(&values);
             let region = Region::of(&cut, &names).map_err(|error| wrong(error.to_string()))?;
             for conjunction in &region.alternatives {
@@ -121,8 +123,10 @@ impl Product<'_> {
                 let polytope = Polytope::around(template, &sides);
                 let states = conjunction.cut(&polytope, &names).and_then(StateSet::from_polytope);
                 let Some(states) = states else { continue };
-                let (locations, condition) = (locations.clone(), condition.clone());
-                initial.push(Initial { locations, states, condition });
+                // Nor do sets of states end where comparisons end that are not affine.
+                let others = conjunction.others.iter().cloned().map(Predicate::Comparison);
+                let condition = Predicate::all([strict.clone()].into_iter().chain(others));
+                initial.push(Initial { locations: locations.clone(), states, condition });
             }
         }
         if initial.is_empty() {
