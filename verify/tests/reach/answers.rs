@@ -239,7 +239,7 @@ fn what_cannot_be_asked_is_told() {
     };
     let start = [(10.0, 10.0), (0.0, 0.0)];
     let error = ask(&start, &forbidden, &settings);
-    assert_eq!(error.to_string(), "there is no location `flying`: there are falling");
+    assert_eq!(error.to_string(), "there is no location `flying`: there are `falling`");
     let error = ask(&start[..1], &[], &settings);
     assert_eq!(error.to_string(), "the initial set has 1 coordinates, and the model 2: h, v");
     let error = ask(&start, &[], &Settings { step: 0.0, ..settings.clone() });
