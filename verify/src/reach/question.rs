@@ -168,7 +168,7 @@ pub fn prove(
                 known: model
                     .locations()
                     .iter()
-                    .map(|place| place.name.as_str())
+                    .map(|place| format!("`{}`", place.name))
                     .collect::<Vec<_>>()
                     .join(", "),
             })
