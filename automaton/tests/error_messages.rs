@@ -5,7 +5,7 @@ use pleach_automaton::{
     Automaton, BuildError, Composition, Name, Record, Reset, coordinates, from,
 };
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency, vocabulary};
-use pleach_guards::{Guard, always, variable};
+use pleach_guards::{Guard, always, proposition, variable};
 
 vocabulary! {
     enum Lamp: Location { Off = "off", Lit = "lit", Broken = "broken" }
@@ -63,7 +63,7 @@ fn automata_say_what_does_not_fit() {
     let [off_push, off_hold] =
         [Press::Push, Press::Hold].map(|event| row(Lamp::Off, event, Lamp::Lit));
     let known = "which the state does not have";
-    let expected: [(Parts, String); 15] = [
+    let expected: [(Parts, String); 16] = [
         (
             table(&[off_push], Lamp::Broken).on(Press::Push, light(), Reset::identity()),
             "the initial location `broken` occurs in no row of the table".into(),
@@ -103,6 +103,10 @@ fn automata_say_what_does_not_fit() {
         (
             lamp().invariant(Lamp::Lit, variable("noise").at_most(1.0)),
             format!("the invariant of `lit` names variable `noise`, {known}"),
+        ),
+        (
+            lamp().invariant(Lamp::Lit, proposition("plugged in")),
+            format!("`lit` names proposition `plugged in`, {known}"),
         ),
         (
             lamp().transition(
@@ -157,6 +161,22 @@ fn automata_say_what_does_not_fit() {
         let error = parts.build().expect_err(&message);
         assert_eq!(error.to_string(), message);
     }
+}
+
+#[test]
+fn parameters_say_why_they_cannot_be_set() {
+    let lamp = lamp().parameter("gain", 1.0).build().expect("the parts fit");
+    let why =
+        |parameter: &str, value: f64| lamp.with(parameter, value).err().map(|it| it.to_string());
+    assert_eq!(
+        why("again", 2.0).as_deref(),
+        Some("there is no parameter `again`: there is `gain`")
+    );
+    assert_eq!(
+        why("gain", f64::NAN).as_deref(),
+        Some("parameter `gain` cannot be NaN: give it a finite number")
+    );
+    assert_eq!(why("gain", 2.0), None);
 }
 
 #[test]

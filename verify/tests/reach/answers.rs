@@ -244,6 +244,11 @@ fn what_cannot_be_asked_is_told() {
     assert_eq!(error.to_string(), "the initial set has 1 coordinates, and the model 2: h, v");
     let error = ask(&start, &[], &Settings { step: 0.0, ..settings.clone() });
     assert_eq!(error.to_string(), "`step` is 0, and has to be a duration above 0");
+    let error = verify(&ball(), &[], &[], &[], &settings, &Effort::default()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "no initial states are given: give at least one set in which runs begin"
+    );
     let stranger = [Forbidden::anywhere(variable("w").at_most(0.0))];
     let error = ask(&start, &stranger, &settings);
     assert_eq!(error.to_string(), "`w ≤ 0` reads `w`, which is no variable of the model");
