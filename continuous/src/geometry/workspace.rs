@@ -1,5 +1,6 @@
 //! The workspace W: a polygon with polygonal holes (Sec. II).
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -362,7 +363,7 @@ fn check_vertices(polygon: Polygon, vertices: &[Point]) -> Result<(), WorkspaceE
     let mut sorted: Vec<usize> = (0..vertices.len()).collect();
     sorted.sort_by(|&i, &j| {
         let (p, q) = (vertices[i], vertices[j]);
-        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(&j))
+        in_order(p.x, q.x).then(in_order(p.y, q.y)).then(i.cmp(&j))
     });
     if let Some(pair) = sorted.windows(2).find(|pair| vertices[pair[0]] == vertices[pair[1]]) {
         let (first, second) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
@@ -469,12 +470,17 @@ fn is_counter_clockwise(vertices: &[Point]) -> bool {
     let lowest = (0..count)
         .min_by(|&i, &j| {
             let (p, q) = (vertices[i], vertices[j]);
-            p.y.total_cmp(&q.y).then(p.x.total_cmp(&q.x))
+            in_order(p.y, q.y).then(in_order(p.x, q.x))
         })
         .unwrap_or(0);
     let before = vertices[(lowest + count - 1) % count];
     let after = vertices[(lowest + 1) % count];
     side(before, vertices[lowest], after) > 0.0
+}
+
+/// The order of two coordinates. Zero is the same number with either sign.
+fn in_order(one: f64, other: f64) -> Ordering {
+    (one + 0.0).total_cmp(&(other + 0.0))
 }
 
 fn extent_of(polygons: &[Vec<Point>]) -> f64 {
