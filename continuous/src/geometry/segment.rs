@@ -132,6 +132,20 @@ impl Segment {
         crosses.then(|| self.from + self.vector() * (c / (c - d)))
     }
 
+    /// Where this edge meets `path`, as shares of the way: at most two, the ends of what they have in common.
+    pub(super) fn shares_on(&self, path: &Segment) -> impl Iterator<Item = f64> + use<> {
+        let (from, to) = (side(self.from, self.to, path.from), side(self.from, self.to, path.to));
+        let along = path.vector();
+        let shares = match self.meets(path) {
+            false => [None, None],
+            true if from == 0.0 && to == 0.0 => [self.from, self.to].map(|end| {
+                Some((along.dot(&(end - path.from)) / along.norm_squared()).clamp(0.0, 1.0))
+            }),
+            true => [Some(from / (from - to)), None],
+        };
+        shares.into_iter().flatten()
+    }
+
     fn boxes_overlap(&self, other: &Segment) -> bool {
         (0..2).all(|axis| {
             let (a, b) = (self.from[axis], self.to[axis]);
@@ -186,5 +200,23 @@ mod tests {
         let (one, other) = (segment((0.0, 0.0), (2.0, 2.0)), segment((0.0, 2.0), (2.0, 0.0)));
         assert_eq!(one.crossing_point(&other), Some(Point::new(scale, scale)));
         assert_eq!(one.distance_to(&other), 0.0);
+    }
+
+    #[test]
+    fn an_edge_meets_a_path_at_shares_of_it() {
+        let segment =
+            |a: (f64, f64), b: (f64, f64)| Segment::new(Point::new(a.0, a.1), Point::new(b.0, b.1));
+        let path = segment((1.0, 1.0), (5.0, 1.0));
+        for (edge, shares) in [
+            (segment((2.0, 0.0), (2.0, 3.0)), vec![0.25]),
+            (segment((4.0, 1.0), (2.0, 3.0)), vec![0.75]),
+            (segment((5.0, 0.0), (5.0, 1.0)), vec![1.0]),
+            (segment((2.0, 1.0), (3.0, 1.0)), vec![0.25, 0.5]),
+            (segment((0.0, 1.0), (9.0, 1.0)), vec![0.0, 1.0]),
+            (segment((6.0, 1.0), (9.0, 1.0)), vec![]),
+            (segment((2.0, 2.0), (2.0, 3.0)), vec![]),
+        ] {
+            assert_eq!(edge.shares_on(&path).collect::<Vec<_>>(), shares, "{edge:?}");
+        }
     }
 }

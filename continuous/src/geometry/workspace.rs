@@ -14,6 +14,9 @@ use crate::Point;
 /// Largest magnitude of a coordinate: beyond it the square of a length leaves the range of numbers.
 pub(super) const COORDINATE_LIMIT: f64 = 1e100;
 
+/// What is nearer to ∂W than this fraction of the extent lies on it, up to rounding.
+const NEGLIGIBLE_CLEARANCE: f64 = 1e-13;
+
 /// The bounded region W in which the robots live: a simple polygon without the interiors of its
 /// holes. Its boundary ∂W has W on the left: the outer boundary runs counter-clockwise, holes run
 /// clockwise, however they were given.
@@ -316,8 +319,13 @@ impl Workspace {
 
     /// Whether a part of a segment lies in W, and not on ∂W alone.
     pub(super) fn holds_part_of(&self, path: &Segment) -> bool {
-        let crosses = || self.edges().any(|edge| edge.crossing_point(path).is_some());
-        self.contains(nalgebra::center(&path.from, &path.to)) || crosses()
+        let mut shares = vec![0.0, 1.0];
+        self.tree.for_each_overlapping(path, |_, edge| shares.extend(edge.shares_on(path)));
+        shares.sort_by(f64::total_cmp);
+        // Between two places where the segment meets ∂W, all of it lies in W, outside, or on ∂W.
+        let middles = shares.windows(2).map(|part| path.at((part[0] + part[1]) / 2.0));
+        let least = NEGLIGIBLE_CLEARANCE * self.extent;
+        middles.into_iter().any(|middle| self.clearance(middle) > least)
     }
 
     /// Whether a segment meets ∂W or comes closer to it than `distance`.
