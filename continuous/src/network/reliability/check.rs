@@ -261,6 +261,19 @@ mod tests {
         }
     }
 
+    /// The range less the margin is rounded; from there on nothing arrives.
+    #[test]
+    fn a_margin_takes_nothing_but_its_length_from_the_range() {
+        for (range, margin) in [(3.65, 0.353), (0.86, 0.18), (3.47, 0.611)] {
+            let link = CubicReliability::new(0.4, range).unwrap();
+            let link = WithMargin::new(link, margin).unwrap();
+            assert_eq!(link.reliability(link.range()), 0.0);
+            assert_eq!(link.slope(link.range()), 0.0);
+            assert_eq!(link.expected_transmissions(link.range()), f64::INFINITY);
+            assert_eq!(check(&link), Ok(()), "{link:?}");
+        }
+    }
+
     #[test]
     fn models_that_cannot_be_are_refused() {
         assert!(LogisticReliability::new(0.4, 0.5, 1.9).is_err());
