@@ -1,9 +1,10 @@
 //! What becomes of what a robot hears, and of those that it does not hear any more.
 
-use crate::network::robot::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
 use pleach_discrete::network::Stage;
 
 use super::*;
+use crate::network::robot::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
+use crate::network::roll::Absent;
 use crate::node::{Node as _, Outputs};
 
 /// A round passes in which robots send, and this robot hears nobody.
@@ -47,6 +48,21 @@ fn a_robot_nearby_that_falls_silent_is_taken_to_stay() {
     silent_rounds(&mut robot, 10);
     assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, ROUNDS_TO_BE_HEARD as u8)]);
     assert!(robot.neighbour(1).expect("it is kept").is_silent());
+}
+
+/// It has granted them.
+#[test]
+fn a_robot_that_is_called_gone_stays_in_sight_as_long_as_packets_flow_to_it() {
+    let mut robot = robot();
+    robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
+    robot.held_flow(1).flow = 0.1;
+    let gone = [1].into_iter().collect();
+    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+    silent_rounds(&mut robot, 10);
+    assert_eq!(hears(&robot), [1]);
+    robot.held_flow(1).flow = 0.0;
+    silent_rounds(&mut robot, 1);
+    assert!(hears(&robot).is_empty(), "nothing is left of the lease");
 }
 
 #[test]
