@@ -3,8 +3,8 @@
 use crate::command_line::pleach;
 use crate::generated::keep_up_to_date;
 use pleach::guards::Interval;
-use pleach::spaceex::{self, Problem, Verdict};
-use pleach::verify::reach::{Completion, Directions, Effort};
+use pleach::spaceex::{self, Initial, Problem, Verdict, Written};
+use pleach::verify::reach::{Completion, Directions, Effort, StateSet};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -65,22 +65,23 @@ fn networks_are_products() {
     assert_eq!(verdict(&problem([TIMERS[0], &full])), Verdict::Violated);
 }
 
+fn write(problem: &Problem) -> Written {
+    spaceex::write(
+        &problem.automata[0],
+        &problem.uncertain,
+        &problem.initial,
+        &problem.forbidden,
+        &problem.settings,
+        &problem.shown,
+    )
+    .unwrap()
+}
+
 /// What is written reads back as the same automaton and the same question.
 #[test]
 fn what_is_written_is_read_back() {
     for files in [BALL, TIMERS, RELAY] {
         let first = problem(files);
-        let write = |problem: &Problem| {
-            spaceex::write(
-                &problem.automata[0],
-                &problem.uncertain,
-                &problem.initial,
-                &problem.forbidden,
-                &problem.settings,
-                &problem.shown,
-            )
-            .unwrap()
-        };
         let written = write(&first);
         let second = problem([&written.model, &written.configuration]);
         let names = |problem: &Problem| -> Vec<String> {
@@ -92,6 +93,43 @@ fn what_is_written_is_read_back() {
         assert_eq!(write(&second), written);
         assert_eq!((&second.settings, &second.shown), (&first.settings, &first.shown));
     }
+}
+
+/// Comparisons between variables, strict ones, and curved ones are written with the box of the initial states.
+#[test]
+fn initial_states_are_written_with_all_that_bounds_them() {
+    let begin = "10 <= x & x <= 10.2 & 0 <= v & v <= 0.1 & loc(one)==flying & ";
+    let ball = |more: &str, forbidden: &str| {
+        let start = BALL[1]
+            .replace("10 <= x <= 10.2 & v == 0 & loc(one)==flying", &format!("{begin}{more}"));
+        problem([BALL[0], &start.replace("x >= 10.25", forbidden)])
+    };
+    for more in [
+        "x + v <= 10.05",
+        "x + 2*v < 10.05",
+        "x*x + v*v <= 101",
+        "x < 10.05",
+        "x - v == 10.05",
+        "10.1 > x + v*v",
+    ] {
+        let first = ball(more, "x >= 10.15");
+        let written = write(&first);
+        let second = problem([&written.model, &written.configuration]);
+        assert_eq!(second.initial, first.initial, "{more}: {}", written.configuration);
+        assert_eq!(write(&second), written);
+    }
+    let first = ball("x + v <= 10.05", "x >= 10.15");
+    let written = write(&first);
+    let second = problem([&written.model, &written.configuration]);
+    assert_eq!((verdict(&first), verdict(&second)), (Verdict::Holds, Verdict::Holds));
+
+    // No list of comparisons says what is in a zonotope.
+    let around = Initial {
+        states: StateSet::from_zonotope(first.initial[0].states.to_zonotope()),
+        ..first.initial[0].clone()
+    };
+    let error = spaceex::write(&first.automata[0], &[], &[around], &[], &first.settings, &[]);
+    assert!(error.unwrap_err().starts_with("initial states that are a zonotope cannot be written"));
 }
 
 /// `room.lamp.h` is the heat of the room, `h` of the whole; `room.lamp.age` is the lamp's own; the lamp's

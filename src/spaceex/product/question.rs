@@ -109,7 +109,7 @@ impl Product<'_> {
             let values = Substitution::new(values);
             let mut strict = states_of(&mut clauses.iter())?;
             strict.retain(is_strict);
-            let strict = Predicate::all(strict).substitute(&values);
+            strict.iter_mut().for_each(|one| *one = one.substitute(&values));
             // All but the sides of the box cut it.
             let cuts = states_of(&mut clauses.iter().filter(|clause| bound(clause).is_none()))?;
             let cut = Predicate::all(cuts).substitute(&values);
@@ -125,7 +125,8 @@ impl Product<'_> {
                 let Some(states) = states else { continue };
                 // Nor do sets of states end where comparisons end that are not affine.
                 let others = conjunction.others.iter().cloned().map(Predicate::Comparison);
-                let condition = Predicate::all([strict.clone()].into_iter().chain(others));
+                let others = others.filter(|other| !strict.contains(other));
+                let condition = Predicate::all(strict.iter().cloned().chain(others));
                 initial.push(Initial { locations: locations.clone(), states, condition });
             }
         }
