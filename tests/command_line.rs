@@ -172,6 +172,30 @@ fn said(bytes: &[u8]) -> String {
 }
 
 /// The rows of comma-separated values, none of which has a comma in it.
+/// A recording on the standard output is the one that a file gets, and no file is called `-`.
+#[cfg(feature = "mcap")]
+#[test]
+fn recordings_go_to_the_standard_output() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("recordings");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let [trace, file] = ["few.jsonl", "few.mcap"].map(|name| folder.join(name));
+    let run = ["run", "scenarios/too-few.toml", "--no-figures", "-q", "--trace"];
+    pleach(&[&run[..], &[trace.to_str().unwrap()]].concat());
+    let export = |recording: &str| {
+        let program = Command::new(env!("CARGO_BIN_EXE_pleach"))
+            .current_dir(&folder)
+            .args(["export", "few.jsonl", recording])
+            .output()
+            .expect("the program starts");
+        assert_eq!(program.status.code(), Some(0), "{}", said(&program.stderr));
+        program.stdout
+    };
+    assert!(String::from_utf8_lossy(&export("few.mcap")).starts_with("few.mcap: "));
+    assert!(export("-") == std::fs::read(file).unwrap());
+    assert!(!folder.join("-").exists());
+}
+
 fn rows(csv: &str) -> Vec<Vec<&str>> {
     csv.lines().map(|line| line.split(',').collect()).collect()
 }
