@@ -218,6 +218,30 @@ fn a_sweep_gives_a_table_and_the_worst_status() {
     assert!(said(&output.stderr).contains("step limit"), "the table for people goes elsewhere");
 }
 
+/// A run that comes to nothing leaves the tables of those before it.
+#[test]
+fn tables_are_kept_until_there_are_others() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [csv, json] = ["kept.csv", "kept-table.json"].map(|name| folder.join(name));
+    let tables = ["--csv", csv.to_str().unwrap(), "--json", json.to_str().unwrap()];
+    for table in [&csv, &json] {
+        std::fs::write(table, "of before").unwrap();
+    }
+    let run = ["run", "scenarios/too-few.toml", "--no-figures", "-q"];
+    let broken = ["--trace", "no/such/folder/t.jsonl"];
+    assert_eq!(pleach(&[&run[..], &tables, &broken].concat()).status.code(), Some(2));
+    for table in [&csv, &json] {
+        assert_eq!(std::fs::read_to_string(table).unwrap(), "of before");
+    }
+    pleach(&[&run[..], &tables].concat());
+    assert!(std::fs::read_to_string(&csv).unwrap().starts_with("run,source,scenario"));
+    assert!(std::fs::read_to_string(&json).unwrap().starts_with('['));
+
+    let nowhere = pleach(&[&run[..], &["--csv", "no/such/folder/t.csv"]].concat());
+    assert_eq!(nowhere.status.code(), Some(2));
+    assert!(said(&nowhere.stderr).contains("t.csv: cannot be created"), "{nowhere:?}");
+}
+
 /// Each column of the table holds what the run itself says.
 #[test]
 fn tables_hold_what_the_runs_are() {
