@@ -322,8 +322,11 @@ fn rounded_to(place: [f64; 2], extent: f64) -> [f64; 2] {
     place.map(|value| format!("{value:.decimals$}").parse().unwrap_or(value))
 }
 
+/// A rate to four decimals, or to two digits where these are less; rounded down, so that the sum stays what it was.
 fn rounded_rate(rate: f64) -> f64 {
-    (rate * 1e4).floor() / 1e4
+    let decimals = (1.0 - rate.log10().floor()).max(4.0);
+    let scale = 10f64.powf(decimals);
+    (rate * scale).floor() / scale
 }
 
 /// A number without the rounding of its last digits.
@@ -376,4 +379,17 @@ fn polygon(ring: &[[f64; 2]], indent: &str) -> String {
         format!("{indent}    {},\n", corners.join(", "))
     };
     format!("[\n{}{indent}]", ring.chunks(IN_A_LINE).map(line).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Robots without a rate would say nothing.
+    #[test]
+    fn rates_of_many_robots_are_above_zero() {
+        let rates =
+            [1, 7, 8, 600, 6001, 65_535].map(|robots| rounded_rate(RATES / f64::from(robots)));
+        assert_eq!(rates, [0.6, 0.0857, 0.075, 0.001, 0.000_099, 0.000_009_1]);
+    }
 }
