@@ -430,6 +430,21 @@ fn maps_that_are_none_are_refused() {
     }
 }
 
+/// What a scenario is imported from stands in comments, whatever characters are in it.
+#[test]
+fn comments_of_scenarios_stay_comments() {
+    let plan = plan("cellar.map", &Reading::default());
+    let (scenario, _) = import::skeleton(&plan, &Choices::named("cellar")).unwrap();
+    let notes = ["one\r\nname = 2".to_owned()];
+    let text = import::text(&scenario, "a\nname = 1\u{7}.map", &notes);
+    assert!(
+        text.starts_with("# Imported from a\\nname = 1\\u{7}.map.\n# - one\\r\\nname = 2\n"),
+        "{text}"
+    );
+    let read = pleach::scenario_file::parse_with(&text, Path::new("it.toml"), &[]).unwrap();
+    assert_eq!(read.name, "cellar");
+}
+
 /// A wall whose ring is left open keeps all its corners: without one of them, robots would get through.
 #[test]
 fn a_ring_that_is_left_open_is_closed() {

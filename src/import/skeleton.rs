@@ -336,10 +336,10 @@ fn trimmed(value: f64) -> f64 {
 
 /// The scenario as a file for people: places in rows, with comments.
 pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
-    let mut text = format!("# Imported from {origin}.\n");
+    let mut text = format!("# Imported from {}.\n", in_a_line(origin));
     for note in notes {
         // Writing into a text does not fail.
-        let _ = writeln!(text, "# - {note}");
+        let _ = writeln!(text, "# - {}", in_a_line(note));
     }
     let _ = write!(text, "\nname = {:?}\n\n[workspace]\n", scenario.name);
     let _ = writeln!(text, "boundary = {}", polygon(&scenario.workspace.boundary, ""));
@@ -369,6 +369,12 @@ pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
         let _ = write!(text, "\n[[task]]\nposition = {position:?}\n");
     }
     text
+}
+
+/// A text as a comment can hold it: line breaks and other control characters are escaped.
+fn in_a_line(text: &str) -> String {
+    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.into() };
+    text.chars().map(escaped).collect()
 }
 
 /// A polygon with a few corners in each line.
