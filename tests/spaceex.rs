@@ -484,6 +484,23 @@ fn what_is_too_large_is_refused_and_inputs_are_not_overwritten() {
     assert_eq!(std::fs::read_to_string(model).expect("it is there"), BALL[0]);
 }
 
+/// Each level of parentheses is looked through anew, so that they are counted first.
+#[test]
+fn conditions_are_nested_up_to_a_limit() {
+    let nested = |levels: usize| {
+        let forbidden = format!("{}x >= 10.25{}", "(".repeat(levels), ")".repeat(levels));
+        BALL[1].replace("x >= 10.25", &forbidden)
+    };
+    assert_eq!(problem([BALL[0], &nested(100)]).forbidden, problem(BALL).forbidden);
+    for levels in [101, 20_000] {
+        assert_eq!(
+            refusal(BALL[0], &nested(levels)),
+            "line 4 of the configuration: a condition has more than 100 levels of parentheses: leave out those that \
+             change nothing"
+        );
+    }
+}
+
 /// Whichever way `initially` is written, no run begins beyond it: one that did was taken for a counterexample.
 #[test]
 fn all_comparisons_of_initially_bound_where_runs_begin() {
