@@ -403,6 +403,29 @@ fn inputs_have_bounds_in_every_location() {
     assert!(other.contains("[0, 1] in location `A`, and in [5, 6] in `B`"), "{other}");
 }
 
+/// No run has an input at the end of a strict bound, though what is enclosed has it.
+#[test]
+fn strict_bounds_of_inputs_are_not_reached() {
+    let asked = |bounds: &str, forbidden: &str| {
+        let model = format!(
+            r#"<sspaceex><component id="s"><param name="x" type="real"/><param name="age" type="real"/>
+            <param name="u" type="real"/><location id="1" name="A"><invariant>{bounds}</invariant>
+            <flow>x'==u-4 &amp; age'==1</flow></location></component></sspaceex>"#
+        );
+        let question = format!("forbidden = \"{forbidden} & age >= 1\"\ntime-horizon = 2");
+        problem([&model, &format!("initially = \"x == 0 & age == 0\"\n{question}")])
+    };
+    assert_eq!(verdict(&asked("0&lt;=u &amp; u&lt;=4", "x >= 0")), Verdict::Violated);
+    for bounds in ["0&lt;=u &amp; u&lt;4", "0&lt;=u &amp; u&lt;=4 &amp; 4&gt;u"] {
+        let problem = asked(bounds, "x >= 0");
+        assert_eq!(verdict(&problem), Verdict::Undecided, "{bounds}");
+        let written = write(&problem);
+        let again = self::problem([&written.model, &written.configuration]);
+        assert_eq!(again.initial, problem.initial, "{}", written.configuration);
+        assert_eq!(verdict(&asked(bounds, "x >= -0.5")), Verdict::Violated, "{bounds}");
+    }
+}
+
 /// A location without transitions, beside others that have some: runs may begin in either.
 #[test]
 fn runs_may_begin_where_no_transition_leads() {
