@@ -286,14 +286,18 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     ///
     /// # Errors
     ///
-    /// [`UnknownParameter`] if it has no parameter of that name, or `value` is not finite.
-    pub fn with(&self, parameter: &str, value: f64) -> Result<Self, UnknownParameter> {
-        let mut changed = self.clone();
-        let place = changed.parameters.iter_mut().find(|(name, _)| name == parameter);
-        match place.filter(|_| value.is_finite()) {
-            Some((_, present)) => *present = value,
-            None => return Err(UnknownParameter { parameter: parameter.to_owned(), value }),
+    /// [`ParameterError`] if it has no parameter of that name, or `value` is not finite.
+    pub fn with(&self, parameter: &str, value: f64) -> Result<Self, ParameterError> {
+        let parameter = || parameter.to_owned();
+        let Some(place) = self.parameters.iter().position(|(name, _)| *name == parameter()) else {
+            let known = self.parameters.iter().map(|(name, _)| name.clone()).collect();
+            return Err(ParameterError::Unknown { parameter: parameter(), known });
+        };
+        if !value.is_finite() {
+            return Err(ParameterError::NotFinite { parameter: parameter(), value });
         }
+        let mut changed = self.clone();
+        changed.parameters[place].1 = value;
         Ok(changed)
     }
 
@@ -320,14 +324,33 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     }
 }
 
-/// An automaton has no parameter of this name, or the value is none for it.
+/// Why a parameter cannot be set.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error(
-    "`{parameter}` cannot be set to {value}: the model has no such parameter, or the value is not finite"
-)]
-pub struct UnknownParameter {
-    /// The name.
-    pub parameter: String,
-    /// The value.
-    pub value: f64,
+#[non_exhaustive]
+pub enum ParameterError {
+    /// The model has no such parameter.
+    #[error("there is no parameter `{parameter}`: {}", listed(known))]
+    Unknown {
+        /// The name.
+        parameter: String,
+        /// The names of those that there are.
+        known: Vec<String>,
+    },
+    /// The value is not finite.
+    #[error("parameter `{parameter}` cannot be {value}: give it a finite number")]
+    NotFinite {
+        /// The name.
+        parameter: String,
+        /// The value.
+        value: f64,
+    },
+}
+
+fn listed(known: &[String]) -> String {
+    let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+    match &*names {
+        [] => "the model has none".to_owned(),
+        [only] => format!("there is {only}"),
+        _ => format!("there are {}", names.join(", ")),
+    }
 }

@@ -48,7 +48,7 @@ pub mod trace;
 pub mod trajectory;
 pub mod zeno;
 
-pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError, UnknownParameter};
+pub use automaton::{Automaton, Jump, Mode, ParameterError, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{

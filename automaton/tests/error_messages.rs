@@ -1,9 +1,11 @@
 //! What is said about parts that do not fit: the place, what is wrong, and what would be right.
 //! Every error of `build` is here, of automata and of compositions.
 
-use pleach_automaton::{Automaton, BuildError, Composition, Reset, coordinates, from};
+use pleach_automaton::{
+    Automaton, BuildError, Composition, Name, Record, Reset, coordinates, from,
+};
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency, vocabulary};
-use pleach_guards::{Guard, always, variable};
+use pleach_guards::{Guard, always, proposition, variable};
 
 vocabulary! {
     enum Lamp: Location { Off = "off", Lit = "lit", Broken = "broken" }
@@ -61,7 +63,7 @@ fn automata_say_what_does_not_fit() {
     let [off_push, off_hold] =
         [Press::Push, Press::Hold].map(|event| row(Lamp::Off, event, Lamp::Lit));
     let known = "which the state does not have";
-    let expected: [(Parts, String); 15] = [
+    let expected: [(Parts, String); 16] = [
         (
             table(&[off_push], Lamp::Broken).on(Press::Push, light(), Reset::identity()),
             "the initial location `broken` occurs in no row of the table".into(),
@@ -101,6 +103,10 @@ fn automata_say_what_does_not_fit() {
         (
             lamp().invariant(Lamp::Lit, variable("noise").at_most(1.0)),
             format!("the invariant of `lit` names variable `noise`, {known}"),
+        ),
+        (
+            lamp().invariant(Lamp::Lit, proposition("plugged in")),
+            format!("`lit` names proposition `plugged in`, {known}"),
         ),
         (
             lamp().transition(
@@ -158,6 +164,22 @@ fn automata_say_what_does_not_fit() {
 }
 
 #[test]
+fn parameters_say_why_they_cannot_be_set() {
+    let lamp = lamp().parameter("gain", 1.0).build().expect("the parts fit");
+    let why =
+        |parameter: &str, value: f64| lamp.with(parameter, value).err().map(|it| it.to_string());
+    assert_eq!(
+        why("again", 2.0).as_deref(),
+        Some("there is no parameter `again`: there is `gain`")
+    );
+    assert_eq!(
+        why("gain", f64::NAN).as_deref(),
+        Some("parameter `gain` cannot be NaN: give it a finite number")
+    );
+    assert_eq!(why("gain", 2.0), None);
+}
+
+#[test]
 fn lists_that_lack_something_are_seen() {
     let [known, forgotten] = [Forgetful::Known, Forgetful::Forgotten];
     let build = |location, event| -> Result<_, BuildError> {
@@ -184,10 +206,17 @@ fn compositions_say_what_does_not_fit() {
     let pair = || lamp_of("left").add("right", &built(lamp()));
     let nowhere = Automaton::<Lamp, Press, Light>::starting_in(Lamp::Off).build();
     let warming = built(lamp().flow(Lamp::Lit, heat.rate(1.0)));
+    let dotted = Automaton::<Name, Name, Record>::starting_in(Name::new("here"));
+    let dotted = dotted.initially(Record::new([("right.q", 0.0)]).expect("one name"));
+    let dotted = dotted.build().expect("the parts fit");
     let misread = "cannot be connected to";
     let expected = [
         (Composition::builder(), "a composition needs at least one component".to_owned()),
         (pair().add("left", &built(lamp())), "two components are called `left`: rename one".into()),
+        (
+            lamp_of("left.right").add("left", &dotted),
+            "two variables are called `left.right.q`: rename a component or a coordinate".into(),
+        ),
         (
             Composition::builder().add("lamp", &nowhere.expect("the parts fit")),
             "component `lamp` has no initial state: give its automaton one with `initially`, or \

@@ -2,7 +2,9 @@
 
 use petgraph::visit::EdgeRef;
 use pleach_automaton::composition::{ProductError, Reached};
-use pleach_automaton::{Automaton, Composition, Flow, Name, Record, Reset, coordinates, from};
+use pleach_automaton::{
+    Automaton, Composition, CompositionError, Flow, Name, Record, Reset, coordinates, from,
+};
 use pleach_discrete::vocabulary;
 use pleach_guards::{Valuation, always};
 
@@ -173,7 +175,7 @@ fn products_with_too_many_locations_are_refused() {
 }
 
 #[test]
-fn coordinates_of_one_name_have_no_product() {
+fn coordinates_of_one_name_make_no_composition() {
     let named = |name: &str| {
         let state = Record::new([(name, 0.0)]).expect("there is one name");
         let only = Name::new("only");
@@ -181,8 +183,10 @@ fn coordinates_of_one_name_have_no_product() {
         built.expect("it is sound")
     };
     let parts = Composition::builder().add("a", &named("b.c")).add("a.b", &named("c"));
-    let product = parts.build().expect("the names of the parts differ").product();
-    assert!(matches!(product, Err(ProductError::Names(_))));
+    let refused = parts.build().map(|_| ());
+    assert!(
+        matches!(refused, Err(CompositionError::VariableTwice { variable }) if variable == "a.b.c")
+    );
 }
 
 /// From 1 on by adding 1 and by doubling, as long as the number is at most 5.

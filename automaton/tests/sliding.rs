@@ -71,6 +71,28 @@ fn jumps_back_and_forth_along_one_flow_are_no_sliding() {
     assert_eq!(reason(1.0, 1.0), Reason::JumpLimit);
 }
 
+/// Nor are jumps back and forth over two boundaries that meet: no mixture of the flows stays on both.
+#[test]
+fn jumps_over_two_boundaries_that_meet_are_no_sliding() {
+    let Plane { px, py } = Plane::coordinates();
+    let reason = |py_back: f64| {
+        sides(Plane { px: 0.0, py: 0.0 }, py.at_most(0.0), px.at_most(0.0))
+            .flow(Before, [px.rate(0.25), py.rate(-0.75)])
+            .flow(Behind, [px.rate(-0.75), py.rate(py_back)])
+            .build()
+            .expect("it is sound")
+            .run(2.0)
+            .expect("it can be run")
+            .ending()
+            .reason
+            .clone()
+    };
+    // One tank is filled while the other runs out, and the hose is moved to and fro.
+    assert_eq!(reason(0.25), Reason::JumpLimit);
+    // A quarter of the second flow stays on both boundaries: the state rests in the corner.
+    assert!(matches!(reason(2.25), Reason::Sliding(_)));
+}
+
 /// Nor are jumps in a circle, though the flows of two of its three locations lead to the boundary.
 #[test]
 fn jumps_in_a_circle_are_no_sliding() {

@@ -133,18 +133,22 @@ impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
     }
 
     /// The full location × event table in Markdown: a cell names the location entered, or shows a
-    /// dash where the event is refused.
+    /// dash where the event is refused. Of names that are known at run time, it has those in rows.
     pub fn to_markdown(&self) -> String {
+        let places = self.rows.iter().flat_map(|row| [row.source, row.target]);
+        let locations = if L::IS_OPEN { first_mentions(places) } else { L::ALL.to_vec() };
+        let taken = self.rows.iter().map(|row| row.event);
+        let events = if E::IS_OPEN { first_mentions(taken) } else { E::ALL.to_vec() };
         let mut text = String::from("| location |");
-        for event in E::ALL {
+        for event in &events {
             // Writing into a string cannot fail, here and below.
             let _ = write!(text, " {} |", cell(event.name()));
         }
         text.push_str("\n| --- |");
-        text.push_str(&" --- |".repeat(E::ALL.len()));
-        for &location in L::ALL {
+        text.push_str(&" --- |".repeat(events.len()));
+        for &location in &locations {
             let _ = write!(text, "\n| **{}** |", cell(location.name()));
-            for &event in E::ALL {
+            for &event in &events {
                 let target = self.next(location, event).map_or("—", Location::name);
                 let _ = write!(text, " {} |", cell(target));
             }
@@ -152,6 +156,17 @@ impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
         text.push('\n');
         text
     }
+}
+
+/// Those that are new, in the order in which they occur first.
+fn first_mentions<T: PartialEq>(mentioned: impl Iterator<Item = T>) -> Vec<T> {
+    let mut new = Vec::new();
+    for one in mentioned {
+        if !new.contains(&one) {
+            new.push(one);
+        }
+    }
+    new
 }
 
 /// A bar would end the cell.
@@ -232,6 +247,45 @@ mod tests {
         row(Door::Closed, Hand::Pull, Door::Open, 0),
         row(Door::Locked, Hand::Turn, Door::Closed, 0),
     ]);
+
+    /// A place or an event that is known at run time.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+    struct Named(&'static str);
+
+    impl Location for Named {
+        const ALL: &'static [Self] = &[];
+        const IS_OPEN: bool = true;
+
+        fn name(self) -> &'static str {
+            self.0
+        }
+    }
+
+    impl Event for Named {
+        const ALL: &'static [Self] = &[];
+        const IS_OPEN: bool = true;
+
+        fn name(self) -> &'static str {
+            self.0
+        }
+    }
+
+    #[test]
+    fn tables_of_names_show_those_in_the_rows() {
+        let row = |[source, event, target]: [&'static str; 3]| Row {
+            source: Named(source),
+            event: Named(event),
+            target: Named(target),
+            urgency: Urgency::May,
+            priority: 0,
+        };
+        let rows = [["in", "go", "out"], ["out", "come", "in"], ["out", "stay", "out"]].map(row);
+        let expected = "| location | go | come | stay |\n\
+                        | --- | --- | --- | --- |\n\
+                        | **in** | out | — | — |\n\
+                        | **out** | — | in | out |\n";
+        assert_eq!(TransitionTable::new(&rows).to_markdown(), expected);
+    }
 
     #[test]
     fn events_lead_where_the_rows_say_and_nowhere_else() {

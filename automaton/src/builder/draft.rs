@@ -158,10 +158,13 @@ impl<'a> Draft<'a> {
             self.check_parameters(names)?;
             self.check_variables(&|name| names.contains(&name) || is_parameter(name))?;
             self.check_initial_state(names)?;
+            if let Some(state) = self.initial_state {
+                self.check_propositions(&|name| state.truth(name).is_some())?;
+            }
         }
         if let Some((variables, propositions)) = self.observed {
             self.check_variables(&|name| variables.contains(&name))?;
-            self.check_propositions(propositions)?;
+            self.check_propositions(&|name| propositions.contains(&name))?;
         }
         Ok(())
     }
@@ -308,21 +311,19 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    fn check_propositions(&self, known: &[&str]) -> Result<(), BuildError> {
+    fn check_propositions(&self, is_known: &dyn Fn(&str) -> bool) -> Result<(), BuildError> {
         let guards = self.given().map(|(event, given)| (event, given.guard.predicate()));
         let invariants = self.invariants.iter();
         let invariants = invariants.map(|(location, one)| (self.locations[*location], *one));
         let commands = self.commands.iter();
         let commands = commands.map(|(location, one)| (self.locations[*location], &one.guard));
-        let unknown = self.exclusive.iter().flatten().find(|name| !known.contains(name));
+        let unknown = self.exclusive.iter().flatten().find(|name| !is_known(name));
         if let Some(&name) = unknown {
             let (place, proposition) = ("propositions that exclude each other", name.to_owned());
             return Err(BuildError::UnknownProposition { place, proposition });
         }
         for (place, predicate) in guards.chain(invariants).chain(commands) {
-            if let Some(name) =
-                predicate.propositions().into_iter().find(|name| !known.contains(name))
-            {
+            if let Some(name) = predicate.propositions().into_iter().find(|name| !is_known(name)) {
                 return Err(BuildError::UnknownProposition { place, proposition: name.to_owned() });
             }
         }

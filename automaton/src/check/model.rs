@@ -32,6 +32,8 @@ pub(crate) struct Model {
     pub(crate) given: Predicate,
     /// What belongs to another component.
     pub(crate) inputs: Vec<String>,
+    /// The event that is taken beyond an accumulation of jumps, whatever its guards say.
+    pub(crate) continuation: Option<usize>,
 }
 
 /// A location with what is said of it.
@@ -104,6 +106,7 @@ impl Model {
             region: Region::new(),
             given: Predicate::all(automaton.exclusive.iter().map(|group| at_most_one(group))),
             inputs: Vec::new(),
+            continuation: None,
         };
         if !automaton.parameters.is_empty() {
             model.substitute(&automaton.numbers());

@@ -4,7 +4,8 @@
 //! location. From there on, a transition is *live* if its guard can hold, or be on the boundary of
 //! holding, in a location that is reached: after time has passed there, while no forced transition
 //! was due; or right on entry, in a state that a live transition lands in. What is not live is so
-//! by proof; a reset that is a function can land anywhere.
+//! by proof; a reset that is a function can land anywhere. What a composition takes beyond an
+//! accumulation of jumps is live wherever its source is reached.
 
 use std::collections::BTreeSet;
 
@@ -57,8 +58,13 @@ impl Inquiry<'_> {
         while known != search.fires.len() {
             known = search.fires.len();
             for (number, transition) in self.model.transitions.iter().enumerate() {
-                if is_satisfiable[number] && search.is_reached[transition.source] {
-                    self.look_at(number, &mut search);
+                if search.is_reached[transition.source] {
+                    if self.goes_on(number) {
+                        search.fires.insert((number, Moment::Later));
+                    }
+                    if is_satisfiable[number] {
+                        self.look_at(number, &mut search);
+                    }
                 }
                 search.is_reached[transition.target] |= search.is_live(number);
             }
@@ -86,6 +92,11 @@ impl Inquiry<'_> {
         }
     }
 
+    /// Whether it is what is taken beyond an accumulation of jumps, whatever its guard says.
+    fn goes_on(&self, number: usize) -> bool {
+        self.model.continuation == Some(self.model.transitions[number].event)
+    }
+
     fn fires_later(&self, number: usize) -> bool {
         let transition = &self.model.transitions[number];
         let guard = closed(transition.guard.predicate());
@@ -104,15 +115,16 @@ impl Inquiry<'_> {
     /// Whether the guard of `number` can hold right after `entry` has been taken. If that was in
     /// the instant in which its own source was entered, then that may be outside its invariant.
     fn fires_after(&self, number: usize, entry: usize, moment: Moment) -> bool {
+        let is_compelled = self.goes_on(entry);
         let [transition, entry] = [number, entry].map(|one| &self.model.transitions[one]);
         let guard = closed(transition.guard.predicate());
         let Some(reset) = entry.substitution() else { return self.is_possible(&guard) };
         let before = match moment {
-            Moment::Later => self.dwelling(entry.source),
-            Moment::OnEntry => always(),
+            _ if is_compelled => always(),
+            Moment::Later => self.dwelling(entry.source) & closed(entry.guard.predicate()),
+            Moment::OnEntry => closed(entry.guard.predicate()),
         };
-        let fires = before & closed(entry.guard.predicate()) & guard.substitute(&reset);
-        self.is_possible(&fires)
+        self.is_possible(&(before & guard.substitute(&reset)))
     }
 
     /// Reports locations that are not reached, and transitions of the others that never fire.

@@ -17,6 +17,7 @@ impl Composition {
         let mut model = Model::clone(&component.model);
         model.component = Some(component.name.clone());
         model.events.clone_from(&component.events);
+        model.continuation = component.continuation;
         model.is_label = component.labels.iter().map(Option::is_some).collect();
         let coordinates = component.blueprint.coordinates.iter().zip(&component.slots);
         for ((name, &slot), is_owned) in coordinates.clone().zip(&component.owned) {

@@ -29,6 +29,15 @@ pub enum ProductError {
         /// What is one.
         part: String,
     },
+    /// A component goes on past accumulations of its jumps, and automata end there.
+    #[error(
+        "component `{component}` goes on past an accumulation of its jumps, which no product does: \
+         leave `past_accumulation` out"
+    )]
+    Accumulation {
+        /// The component.
+        component: String,
+    },
     /// There are too many combinations of locations.
     #[error("the components can be in more than {LOCATIONS} combinations of locations")]
     Locations,
@@ -51,9 +60,13 @@ impl Composition {
     ///
     /// # Errors
     ///
-    /// [`ProductError`] if a flow or a reset is a function, a formula rests on propositions, or there
-    /// are too many combinations.
+    /// [`ProductError`] if a flow or a reset is a function, a formula rests on propositions, a component
+    /// goes on [past an accumulation](crate::CompositionBuilder::past_accumulation) of its jumps, or
+    /// there are too many combinations.
     pub fn product(&self) -> Result<Automaton<Name, Name, Record>, ProductError> {
+        if let Some(one) = self.components.iter().find(|one| one.continuation.is_some()) {
+            return Err(ProductError::Accumulation { component: one.name.clone() });
+        }
         let product = Product::of(self)?;
         let state = Record::new(self.variables.iter().zip(self.initial.iter().copied()))?;
         let coordinates = state.coordinates();

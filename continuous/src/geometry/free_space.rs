@@ -193,8 +193,9 @@ impl FreeSpace {
         self.planning.tree.nearest(point).map_or(point, |(_, nearest)| nearest)
     }
 
-    /// The point of the planning set nearest to `point` of all to which a way leads from `from`, which may lie
-    /// outside, within the reach of re-entry; none if `from` lies in no piece of the free space.
+    /// The point of the planning set nearest to `point` of all to which a way leads from `from`, or, if that lies
+    /// outside, from the point of the planning set nearest to it, also beyond the reach of re-entry; none if a
+    /// coordinate of `from` is not a number.
     pub fn nearest_reached(&self, point: Point, from: Point) -> Option<Point> {
         let piece = self.region(if self.contains(from) { from } else { self.nearest(from) })?;
         let is_reached = |place: &Point| self.region(*place) == Some(piece);

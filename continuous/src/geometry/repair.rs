@@ -4,8 +4,9 @@
 //! shares a wall with its neighbour, a line runs out and back, the first vertex is listed again as
 //! the last. As sets of points they say clearly what is free: where a robot keeps its clearance from every
 //! line that is drawn. So holes that touch are one obstacle, a line that runs out into the workspace and
-//! back is a wall without thickness, and a piece that walls cut off stays a place where robots may be. What
-//! is left ambiguous (edges that cross, holes that overlap) stays an error.
+//! back is a wall without thickness, and a piece that walls cut off stays a place where robots may be. Only a cut
+//! that the boundary follows in both directions, to reach the outline of a hole, is no wall. What is left ambiguous (edges
+//! that cross, holes that overlap) stays an error.
 
 use std::fmt;
 
@@ -14,7 +15,7 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 
 use super::segment::side;
-use super::workspace::{NamedEdge, Polygon, contacts, crossings};
+use super::workspace::{NamedEdge, Polygon, contacts, crossings, edges_of};
 use super::{Segment, Workspace, WorkspaceError};
 use crate::Point;
 
@@ -44,12 +45,12 @@ pub enum Repair {
         /// The tip.
         tip: Point,
     },
-    /// A spike that runs into the workspace and back, or a hole without an area, is a wall without
-    /// thickness.
+    /// A spike that runs into the workspace and back, a line through it that joins two parts of a hole, or a
+    /// hole without an area, is a wall without thickness.
     Wall {
         /// The polygon.
         polygon: Polygon,
-        /// Index of the vertex at its tip, as it was given.
+        /// Index of the vertex at its tip, or where it ends, as it was given.
         vertex: usize,
         /// The wall.
         wall: Segment,
@@ -213,8 +214,9 @@ impl Ring {
     ) -> Ring {
         let mut ring =
             Ring { polygon, vertices: (0..points.len()).collect(), points: points.to_vec() };
-        let mut at = 0;
-        while at < ring.points.len() && ring.points.len() >= 2 {
+        // How many vertices have been looked at since the last one was left out: at the end, all that are left.
+        let (mut at, mut settled) = (0, 0);
+        while settled < ring.points.len() && ring.points.len() >= 2 {
             let count = ring.points.len();
             let (before, here, after) = (
                 ring.points[(at + count - 1) % count],
@@ -231,9 +233,11 @@ impl Ring {
                 let foot = if nearer { after } else { before };
                 Spike { polygon, vertex, line: Segment::new(foot, here) }.join(spikes);
             } else {
-                at += 1;
+                at = (at + 1) % count;
+                settled += 1;
                 continue;
             }
+            settled = 0;
             ring.remove(at);
             if folds && before == after {
                 // The way there and back ends at the vertex where it began.
@@ -256,7 +260,11 @@ impl Spike {
     fn join(self, spikes: &mut Vec<Spike>) {
         let Segment { from, to } = self.line;
         match spikes.last_mut().filter(|last| last.polygon == self.polygon) {
-            Some(Spike { line, .. }) if line.from == to && side(from, to, line.to) == 0.0 => {
+            Some(Spike { line, .. })
+                if line.from == to
+                    && side(from, to, line.to) == 0.0
+                    && (line.to - to).dot(&(to - from)) > 0.0 =>
+            {
                 line.from = from;
             }
             Some(Spike { line, .. })
@@ -304,7 +312,26 @@ fn joined(rings: &[Ring], repairs: &mut Vec<Repair>) -> Result<Workspace, Worksp
         second: second.renamed(name),
     }));
     repairs.extend(cut_off);
-    Ok(workspace)
+    let bridges = bridges(&workspace, rings, repairs);
+    Ok(workspace.with_walls(bridges.into_iter()))
+}
+
+/// The lines that join two parts of a hole, with the workspace on both sides: each is drawn in both directions. As an
+/// area it is nothing, as a line it is a wall. The boundary follows such a line to reach the outline of a hole: there
+/// it is none.
+fn bridges(workspace: &Workspace, rings: &[Ring], repairs: &mut Vec<Repair>) -> Vec<Segment> {
+    let mut walls: Vec<Segment> = Vec::new();
+    for ring in rings.iter().filter(|ring| ring.polygon != Polygon::Boundary) {
+        for (at, wall) in edges_of(&ring.points).enumerate() {
+            let is_known = |known: &Segment| (known.from, known.to) == (wall.to, wall.from);
+            if workspace.holds_part_of(&wall) && !walls.iter().any(is_known) {
+                let vertex = ring.vertices[(at + 1) % ring.vertices.len()];
+                repairs.push(Repair::Wall { polygon: ring.polygon, vertex, wall });
+                walls.push(wall);
+            }
+        }
+    }
+    walls
 }
 
 /// The boundary, which comes first, without the holes, as sets of points, and what of it is cut off; `None`

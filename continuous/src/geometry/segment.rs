@@ -128,8 +128,22 @@ impl Segment {
     pub(super) fn crossing_point(&self, other: &Segment) -> Option<Point> {
         let (a, b) = (side(self.from, self.to, other.from), side(self.from, self.to, other.to));
         let (c, d) = (side(other.from, other.to, self.from), side(other.from, other.to, self.to));
-        let crosses = a * b < 0.0 && c * d < 0.0;
+        let crosses = are_opposite(a, b) && are_opposite(c, d);
         crosses.then(|| self.from + self.vector() * (c / (c - d)))
+    }
+
+    /// Where this edge meets `path`, as shares of the way: at most two, the ends of what they have in common.
+    pub(super) fn shares_on(&self, path: &Segment) -> impl Iterator<Item = f64> + use<> {
+        let (from, to) = (side(self.from, self.to, path.from), side(self.from, self.to, path.to));
+        let along = path.vector();
+        let shares = match self.meets(path) {
+            false => [None, None],
+            true if from == 0.0 && to == 0.0 => [self.from, self.to].map(|end| {
+                Some((along.dot(&(end - path.from)) / along.norm_squared()).clamp(0.0, 1.0))
+            }),
+            true => [Some(from / (from - to)), None],
+        };
+        shares.into_iter().flatten()
     }
 
     fn boxes_overlap(&self, other: &Segment) -> bool {
@@ -139,6 +153,11 @@ impl Segment {
             a.min(b) <= c.max(d) && c.min(d) <= a.max(b)
         })
     }
+}
+
+/// Not by the sign of the product, which for tiny numbers is 0.
+fn are_opposite(one: f64, other: f64) -> bool {
+    one > 0.0 && other < 0.0 || one < 0.0 && other > 0.0
 }
 
 fn opposite_or_on(one: f64, other: f64) -> bool {
@@ -169,5 +188,35 @@ mod tests {
         assert_eq!(crossing((3.0, 2.0)), Some(Point::new(2.0, 1.0)));
         assert_eq!(crossing((1.0, 1.0)), None, "it ends there");
         assert_eq!(crossing((9.0, 2.0)), None, "it passes beside");
+    }
+
+    /// Where products of areas are too small for numbers.
+    #[test]
+    fn tiny_segments_cross_as_well() {
+        let scale = (-280.0_f64).exp2();
+        let segment = |a: (f64, f64), b: (f64, f64)| {
+            Segment::new(Point::new(a.0, a.1) * scale, Point::new(b.0, b.1) * scale)
+        };
+        let (one, other) = (segment((0.0, 0.0), (2.0, 2.0)), segment((0.0, 2.0), (2.0, 0.0)));
+        assert_eq!(one.crossing_point(&other), Some(Point::new(scale, scale)));
+        assert_eq!(one.distance_to(&other), 0.0);
+    }
+
+    #[test]
+    fn an_edge_meets_a_path_at_shares_of_it() {
+        let segment =
+            |a: (f64, f64), b: (f64, f64)| Segment::new(Point::new(a.0, a.1), Point::new(b.0, b.1));
+        let path = segment((1.0, 1.0), (5.0, 1.0));
+        for (edge, shares) in [
+            (segment((2.0, 0.0), (2.0, 3.0)), vec![0.25]),
+            (segment((4.0, 1.0), (2.0, 3.0)), vec![0.75]),
+            (segment((5.0, 0.0), (5.0, 1.0)), vec![1.0]),
+            (segment((2.0, 1.0), (3.0, 1.0)), vec![0.25, 0.5]),
+            (segment((0.0, 1.0), (9.0, 1.0)), vec![0.0, 1.0]),
+            (segment((6.0, 1.0), (9.0, 1.0)), vec![]),
+            (segment((2.0, 2.0), (2.0, 3.0)), vec![]),
+        ] {
+            assert_eq!(edge.shares_on(&path).collect::<Vec<_>>(), shares, "{edge:?}");
+        }
     }
 }

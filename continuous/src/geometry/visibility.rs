@@ -149,8 +149,10 @@ impl Corner {
     /// Whether the obstacle lies on the inner side of a path that bends here: where it comes from and
     /// where it goes to lie outside of the obstacle, which then lies wholly on one side.
     pub(super) fn lies_between(&self, from: Point, to: Point) -> bool {
-        let along = |place: Point| (place - self.at).normalize();
-        let into = self.at + along(self.before) + along(self.after);
+        let (before, after) = (self.before - self.at, self.after - self.at);
+        // As long as the edges are: a length of 1 would be lost beside large coordinates.
+        let reach = before.norm().max(after.norm());
+        let into = self.at + (before.normalize() + after.normalize()) * reach;
         let turn = side(from, self.at, to);
         turn * side(from, self.at, into) > 0.0 && turn * side(self.at, to, into) > 0.0
     }

@@ -1,5 +1,6 @@
 //! The workspace W: a polygon with polygonal holes (Sec. II).
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -12,6 +13,9 @@ use crate::Point;
 
 /// Largest magnitude of a coordinate: beyond it the square of a length leaves the range of numbers.
 pub(super) const COORDINATE_LIMIT: f64 = 1e100;
+
+/// What is nearer to ∂W than this fraction of the extent lies on it, up to rounding.
+const NEGLIGIBLE_CLEARANCE: f64 = 1e-13;
 
 /// The bounded region W in which the robots live: a simple polygon without the interiors of its
 /// holes. Its boundary ∂W has W on the left: the outer boundary runs counter-clockwise, holes run
@@ -315,8 +319,13 @@ impl Workspace {
 
     /// Whether a part of a segment lies in W, and not on ∂W alone.
     pub(super) fn holds_part_of(&self, path: &Segment) -> bool {
-        let crosses = || self.edges().any(|edge| edge.crossing_point(path).is_some());
-        self.contains(nalgebra::center(&path.from, &path.to)) || crosses()
+        let mut shares = vec![0.0, 1.0];
+        self.tree.for_each_overlapping(path, |_, edge| shares.extend(edge.shares_on(path)));
+        shares.sort_by(f64::total_cmp);
+        // Between two places where the segment meets ∂W, all of it lies in W, outside, or on ∂W.
+        let middles = shares.windows(2).map(|part| path.at((part[0] + part[1]) / 2.0));
+        let least = NEGLIGIBLE_CLEARANCE * self.extent;
+        middles.into_iter().any(|middle| self.clearance(middle) > least)
     }
 
     /// Whether a segment meets ∂W or comes closer to it than `distance`.
@@ -362,7 +371,7 @@ fn check_vertices(polygon: Polygon, vertices: &[Point]) -> Result<(), WorkspaceE
     let mut sorted: Vec<usize> = (0..vertices.len()).collect();
     sorted.sort_by(|&i, &j| {
         let (p, q) = (vertices[i], vertices[j]);
-        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(&j))
+        in_order(p.x, q.x).then(in_order(p.y, q.y)).then(i.cmp(&j))
     });
     if let Some(pair) = sorted.windows(2).find(|pair| vertices[pair[0]] == vertices[pair[1]]) {
         let (first, second) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
@@ -469,12 +478,17 @@ fn is_counter_clockwise(vertices: &[Point]) -> bool {
     let lowest = (0..count)
         .min_by(|&i, &j| {
             let (p, q) = (vertices[i], vertices[j]);
-            p.y.total_cmp(&q.y).then(p.x.total_cmp(&q.x))
+            in_order(p.y, q.y).then(in_order(p.x, q.x))
         })
         .unwrap_or(0);
     let before = vertices[(lowest + count - 1) % count];
     let after = vertices[(lowest + 1) % count];
     side(before, vertices[lowest], after) > 0.0
+}
+
+/// The order of two coordinates. Zero is the same number with either sign.
+fn in_order(one: f64, other: f64) -> Ordering {
+    (one + 0.0).total_cmp(&(other + 0.0))
 }
 
 fn extent_of(polygons: &[Vec<Point>]) -> f64 {

@@ -153,6 +153,20 @@ fn detours_lead_through_narrow_gaps() {
     }
 }
 
+/// The smaller disc reaches into where the circles about both octagons meet.
+#[test]
+fn detours_lead_through_narrow_gaps_between_discs_of_two_sizes() {
+    let boundary = ring(&[(0.0, -1.6), (40.0, -1.6), (40.0, 1.6), (0.0, 1.6)]);
+    let corridor = FreeSpace::new(&Workspace::new(boundary, vec![]).unwrap(), 0.1).unwrap();
+    let (from, to) = (Point::new(3.0, 0.1), Point::new(37.0, 0.2));
+    for gap in [0.02, 0.01, 0.005, -0.001] {
+        let below = Disc { center: Point::new(20.0, -0.95), radius: 1.1 };
+        let center = below.center + Vector::new(0.3_f64.sin(), 0.3_f64.cos()) * (2.0 + gap);
+        let discs = [Disc { center, radius: 0.9 }, below];
+        assert_eq!(corridor.detour(from, to, &discs).is_some(), gap > 0.0, "{gap}");
+    }
+}
+
 proptest! {
     #[test]
     fn geodesics_are_shortest(environment in environment(), a in place(), b in place()) {

@@ -125,6 +125,76 @@ fn lines_there_and_back_are_walls() {
     assert!(matches!(refused, Err(WorkspaceError::Flat { .. })), "{refused:?}");
 }
 
+/// The same line, drawn in other steps, and whichever vertex of the room is listed first.
+#[test]
+fn a_wall_is_the_same_from_whichever_vertex_its_polygon_is_listed() {
+    for steps in [&[4.0, 2.0, 3.0, 4.0][..], &[4.0, 3.0, 2.0, 4.0], &[4.0, 2.0, 3.0, 2.0, 4.0]] {
+        let mut boundary = room();
+        boundary.splice(2..2, steps.iter().map(|&x| Point::new(x, 1.0)));
+        for first in 0..boundary.len() {
+            boundary.rotate_left(1);
+            let (workspace, _) = repaired(boundary.clone(), vec![]);
+            assert_eq!(workspace.boundary().len(), 5, "{steps:?} from {first}");
+            for x in [2.25, 2.75, 3.25, 3.75] {
+                let (below, above) = (Point::new(x, 0.5), Point::new(x, 1.5));
+                let clearance = workspace.segment_clearance(below, above);
+                assert!(clearance <= 0.0, "{steps:?} from {first} at {x}");
+            }
+        }
+    }
+}
+
+/// A line runs across a corner of a hole into it, and most of it lies there.
+#[test]
+fn what_leads_a_wall_into_a_hole_is_a_wall() {
+    let mut boundary = room();
+    boundary.push(Point::new(0.0, 1.5));
+    boundary.extend(ring(&[(3.0, 1.5), (0.0, 1.5)]));
+    let hole = ring(&[(1.0, 1.5), (2.5, 0.5), (3.5, 1.5), (2.5, 2.5)]);
+    let (workspace, repairs) = repaired(boundary.clone(), vec![hole.clone()]);
+    assert!(matches!(repairs[..], [Repair::Wall { .. }]), "{repairs:?}");
+    let (below, above) = (Point::new(0.5, 1.0), Point::new(0.5, 2.0));
+    assert!(workspace.segment_clearance(below, above) <= 0.0);
+    // Along the wall of a hole, it adds nothing.
+    let mut square = square_at(1.0, 1.0);
+    square.splice(2..2, ring(&[(2.0, 1.5), (3.0, 1.5), (2.0, 1.5)]));
+    let beside = ring(&[(2.0, 1.5), (3.0, 1.5), (3.0, 2.0), (2.0, 2.0)]);
+    let (_, repairs) = repaired(room(), vec![square, beside]);
+    assert!(repairs.iter().any(|repair| matches!(repair, Repair::Spike { .. })), "{repairs:?}");
+}
+
+/// Two squares that a line joins.
+#[test]
+fn a_line_that_joins_two_parts_of_a_hole_is_a_wall() {
+    let lower = [(1.0, 1.0), (0.5, 1.0), (0.5, 0.5), (1.5, 0.5), (1.5, 1.0), (1.0, 1.0)];
+    let upper = [(1.0, 2.0), (1.5, 2.0), (1.5, 2.5), (0.5, 2.5), (0.5, 2.0), (1.0, 2.0)];
+    let mut hole = ring(&[lower, upper].concat());
+    for first in 0..hole.len() {
+        hole.rotate_left(1);
+        let (workspace, repairs) = repaired(room(), vec![hole.clone()]);
+        let (left, right) = (Point::new(0.75, 1.5), Point::new(1.25, 1.5));
+        assert!(workspace.segment_clearance(left, right) <= 0.0, "from {first}");
+        let mut walls = repairs.iter().filter(|repair| matches!(repair, Repair::Wall { .. }));
+        let Some(&Repair::Wall { polygon, vertex, wall }) = walls.next() else {
+            panic!("{repairs:?}")
+        };
+        assert_eq!((polygon, hole[vertex]), (Polygon::Hole(0), wall.to));
+        assert!(walls.next().is_none(), "{repairs:?}");
+    }
+}
+
+/// The boundary follows a cut to a hole, round it, and back.
+#[test]
+fn a_cut_that_leads_to_a_hole_is_no_wall() {
+    let mut boundary = room();
+    boundary.extend(ring(&[(0.0, 1.5), (1.0, 1.5), (1.0, 2.0), (2.0, 2.0), (2.0, 1.0)]));
+    boundary.extend(ring(&[(1.0, 1.0), (1.0, 1.5), (0.0, 1.5)]));
+    let (workspace, repairs) = Workspace::repaired(boundary, vec![]).unwrap();
+    assert!(!repairs.iter().any(|repair| matches!(repair, Repair::Wall { .. })), "{repairs:?}");
+    assert_eq!(workspace.segment_clearance(Point::new(0.5, 1.0), Point::new(0.5, 2.0)), 0.5);
+    assert!(!workspace.contains(Point::new(1.5, 1.25)));
+}
+
 #[test]
 fn pieces_that_a_wall_cuts_off_are_kept_apart() {
     let wall = ring(&[(1.0, 0.0), (1.2, 0.0), (1.2, 3.0), (1.0, 3.0)]);

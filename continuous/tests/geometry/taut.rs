@@ -26,6 +26,22 @@ fn a_path_stays_on_its_side_of_a_hole() {
     assert!((below - space.distance(from, to)).abs() < 1e-9);
 }
 
+/// However large coordinates are.
+#[test]
+fn a_path_stays_on_its_side_of_a_large_hole() {
+    let scale = 60.0_f64.exp2();
+    let square = |low: f64, high: f64| -> Vec<Point> {
+        let corners = [(low, low), (high, low), (high, high), (low, high)];
+        corners.map(|(x, y)| Point::new(x, y) * scale).to_vec()
+    };
+    let workspace = Workspace::new(square(0.0, 3.0), vec![square(1.0, 2.0)]).unwrap();
+    let space = FreeSpace::new(&workspace, 0.125 * scale).unwrap();
+    let [from, corner, other, to] =
+        [(0.5, 1.2), (0.2, 0.2), (2.8, 0.2), (2.5, 1.2)].map(|(x, y)| Point::new(x, y) * scale);
+    let taut = space.taut(from, &[corner, other, to]).length;
+    assert!((taut / space.distance(from, to) - 1.0).abs() < 1e-9, "{}", taut / scale);
+}
+
 /// There and back on the same side is no way at all.
 #[test]
 fn a_way_there_and_back_comes_to_nothing() {

@@ -1,6 +1,6 @@
 use pleach_continuous::Point;
 use pleach_continuous::geometry::workspace::NamedEdge;
-use pleach_continuous::geometry::{Polygon, Workspace, WorkspaceError};
+use pleach_continuous::geometry::{FreeSpace, Polygon, Workspace, WorkspaceError};
 use proptest::prelude::*;
 
 use super::environments::{environment, place, ring};
@@ -27,6 +27,25 @@ fn interior_lies_on_the_left_of_every_edge() {
             }
         }
     }
+}
+
+/// A vertex that lies on the lowest edge, at a zero with a sign; and two vertices that differ by the sign alone.
+#[test]
+fn the_sign_of_zero_changes_nothing() {
+    let middle = ring(&[(0.0, 0.0), (2.0, -0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)]);
+    for boundary in [middle.clone(), reversed(middle)] {
+        let workspace = Workspace::new(boundary, vec![]).unwrap();
+        for edge in workspace.edges() {
+            let middle = nalgebra::center(&edge.from, &edge.to);
+            assert!(workspace.contains(middle + edge.left_normal() * 0.1), "{edge:?}");
+        }
+        assert!(FreeSpace::new(&workspace, 0.1).is_ok());
+    }
+    let twice = [(-4.0, 0.0), (-0.0, -2.0), (4.0, 0.0), (-0.0, 2.0), (0.0, 1.0), (-0.0, 1.0)];
+    let refused = Workspace::new(ring(&twice), vec![]);
+    let Err(WorkspaceError::RepeatedVertex { first: 4, second: 5, .. }) = refused else {
+        panic!("{refused:?}")
+    };
 }
 
 #[test]

@@ -99,11 +99,6 @@ pub fn faults(root: &Path) -> Result<Vec<Fault>, CatalogueError> {
 }
 
 impl Fault {
-    /// The program that the command runs, and which of its tests, by a part of their names.
-    pub fn tests(&self) -> (&str, &str) {
-        self.command.rsplit_once(' ').unwrap_or((&self.command, ""))
-    }
-
     /// The file below `root` as it is with the fault.
     ///
     /// # Errors

@@ -76,7 +76,8 @@ fn plant_all(workshop: &Workshop, faults: &[Numbered], report: &mut Report) -> R
     let (alone, woven): (Vec<Numbered>, Vec<Numbered>) =
         faults.iter().partition(|(number, _)| alone.contains(number));
     let mut programs: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for (program, tests) in woven.iter().map(|(_, fault)| fault.tests()) {
+    for (_, fault) in &woven {
+        let (program, tests) = fault.command.rsplit_once(' ').unwrap_or((&fault.command, ""));
         programs.entry(program).or_default().insert(tests);
     }
     for (program, tests) in programs {

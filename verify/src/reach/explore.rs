@@ -310,7 +310,10 @@ impl Search<'_> {
 
     /// The part of a set from which time passes: where no jump has to be taken.
     fn kept_waiting(&self, location: usize, set: StateSet) -> Option<StateSet> {
-        let waiting = &self.prepared[location].waiting;
+        let Prepared { waiting, is_urgent, .. } = &self.prepared[location];
+        if *is_urgent {
+            return None;
+        }
         let bounds = self.bounds(location, &set);
         let half_spaces = waiting.iter().map(|(_, half_space)| half_space.clone()).collect();
         let cut = Conjunction { half_spaces, others: Vec::new() };

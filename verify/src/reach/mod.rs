@@ -11,6 +11,9 @@
 //! together. [`falsify()`] searches for a run that comes to forbidden states, and [`verify_formula()`] asks
 //! formulas over time of all runs. [`confirm()`] says whether what checks have found comes up. `docs/reachability.md`
 //! says what is guaranteed, and where not.
+//!
+//! Some names are those of other modules, such as [`Settings`], [`Jump`] and [`Mode`]: import the module,
+//! `use pleach::verify::reach;`, rather than all of its names.
 
 pub mod affine;
 pub mod confirm;

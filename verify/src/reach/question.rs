@@ -89,6 +89,9 @@ pub enum ReachError {
         /// The formula.
         formula: String,
     },
+    /// Runs begin nowhere, so that whatever is asked of all of them would hold.
+    #[error("no initial states are given: give at least one set in which runs begin")]
+    NoStarts,
     /// A set of initial states has another number of coordinates than the model.
     #[error("the initial set has {found} coordinates, and the model {expected}: {variables}")]
     Dimension {
@@ -150,7 +153,7 @@ impl Proof {
 ///
 /// # Errors
 ///
-/// [`ReachError`] if a forbidden set, a set of initial states or a setting makes no sense.
+/// [`ReachError`] if a forbidden set, a set of initial states or a setting makes no sense, or there are no initial states.
 pub fn prove(
     model: &Model,
     starts: &[StateSet],
@@ -159,7 +162,7 @@ pub fn prove(
     progress: &mut dyn FnMut(Interval) -> ControlFlow<()>,
 ) -> Result<Proof, ReachError> {
     let variables = model.variables();
-    check_dimensions(model, starts)?;
+    check_starts(model, starts)?;
     let region = |one: &Forbidden| -> Result<(Option<usize>, Region), ReachError> {
         let place = |name: &String| {
             let mut locations = model.locations().iter();
@@ -168,7 +171,7 @@ pub fn prove(
                 known: model
                     .locations()
                     .iter()
-                    .map(|place| place.name.as_str())
+                    .map(|place| format!("`{}`", place.name))
                     .collect::<Vec<_>>()
                     .join(", "),
             })
@@ -209,8 +212,11 @@ pub fn prove(
     Ok(Proof { enclosure, doubts, clearances })
 }
 
-/// Whether sets of initial states are sets of states of a model.
-pub(super) fn check_dimensions(model: &Model, starts: &[StateSet]) -> Result<(), ReachError> {
+/// Whether there are sets of initial states, and all are sets of states of a model.
+pub(super) fn check_starts(model: &Model, starts: &[StateSet]) -> Result<(), ReachError> {
+    if starts.is_empty() {
+        return Err(ReachError::NoStarts);
+    }
     let variables = model.variables();
     match starts.iter().find(|start| start.hull().len() != variables.len()) {
         Some(start) => Err(ReachError::Dimension {

@@ -78,7 +78,7 @@ pub fn prove_formula(
     if !horizon.is_finite() {
         return Err(ReachError::Endless { formula: formula.to_string() });
     }
-    super::question::check_dimensions(model, starts)?;
+    super::question::check_starts(model, starts)?;
     let mut predicates = Vec::new();
     collect(formula, &mut predicates);
     let mut directions = Vec::new();

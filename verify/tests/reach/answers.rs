@@ -1,7 +1,7 @@
 //! Questions with known answers.
 
 use pleach_automaton::{Automaton, Name, Record, from};
-use pleach_guards::{Predicate, variable};
+use pleach_guards::{Predicate, always, variable};
 use pleach_verify::reach::{
     Answer, Completion, Effort, Forbidden, ModelError, ReachError, Settings, Uncertain, verify,
 };
@@ -202,6 +202,34 @@ fn inputs_vary() {
     assert!((2.0..2.05).contains(&reached), "{reached}");
 }
 
+/// In a location that has to be left at once no time passes, whatever else its flow says.
+#[test]
+fn no_time_passes_where_a_jump_has_to_be_taken_in_every_state() {
+    let state = Record::new([("x", 0.0)]).unwrap();
+    let coordinates = state.coordinates();
+    let [x] = &coordinates[..] else { unreachable!() };
+    let [counting, passing, there] = ["counting", "passing", "there"].map(Name::new);
+    let step = Name::new("step");
+    let relay = |urgent: bool| {
+        let on = from(passing).on(step).to(there);
+        let on = if urgent { on.at_once(always()) } else { on.may(always()) };
+        Automaton::starting_in(counting)
+            .initially(state.clone())
+            .throughout([x.rate(1.0)])
+            .invariant(there, x.at_most(-1.0))
+            .transition(from(counting).on(step).to(passing).must(x.at_least(1.0)))
+            .transition(on)
+            .build()
+            .unwrap()
+    };
+    let settings = Settings { horizon: 4.0, ..Settings::default() };
+    let late = x.at_least(1.5);
+    let answer = asked(&relay(true), &[(0.0, 0.0)], late.clone(), &settings);
+    assert!(matches!(answer, Answer::Holds(_)), "{answer:?}");
+    let answer = asked(&relay(false), &[(0.0, 0.0)], late, &settings);
+    assert!(matches!(answer, Answer::Violated(_)), "{answer:?}");
+}
+
 #[test]
 fn what_cannot_be_asked_is_told() {
     let forbidden = [Forbidden::within("flying", variable("h").at_most(-1.0))];
@@ -211,11 +239,16 @@ fn what_cannot_be_asked_is_told() {
     };
     let start = [(10.0, 10.0), (0.0, 0.0)];
     let error = ask(&start, &forbidden, &settings);
-    assert_eq!(error.to_string(), "there is no location `flying`: there are falling");
+    assert_eq!(error.to_string(), "there is no location `flying`: there are `falling`");
     let error = ask(&start[..1], &[], &settings);
     assert_eq!(error.to_string(), "the initial set has 1 coordinates, and the model 2: h, v");
     let error = ask(&start, &[], &Settings { step: 0.0, ..settings.clone() });
     assert_eq!(error.to_string(), "`step` is 0, and has to be a duration above 0");
+    let error = verify(&ball(), &[], &[], &[], &settings, &Effort::default()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "no initial states are given: give at least one set in which runs begin"
+    );
     let stranger = [Forbidden::anywhere(variable("w").at_most(0.0))];
     let error = ask(&start, &stranger, &settings);
     assert_eq!(error.to_string(), "`w ≤ 0` reads `w`, which is no variable of the model");

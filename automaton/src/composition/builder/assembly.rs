@@ -65,6 +65,16 @@ impl CompositionBuilder {
         names.sort_unstable();
         match names.windows(2).find(|pair| pair[0] == pair[1]) {
             Some(pair) => Err(CompositionError::NameTwice { name: pair[0].clone() }),
+            None => self.check_full_names(),
+        }
+    }
+
+    /// `q.x` of a component `p` is called like `x` of a component `p.q`.
+    fn check_full_names(&self) -> Result<(), CompositionError> {
+        let mut names = self.full_names();
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(CompositionError::VariableTwice { variable: pair[0].clone() }),
             None => Ok(()),
         }
     }

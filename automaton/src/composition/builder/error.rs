@@ -13,6 +13,12 @@ pub enum CompositionError {
         /// The name.
         name: String,
     },
+    /// Two variables have one name, since names of components or coordinates contain dots.
+    #[error("two variables are called `{variable}`: rename a component or a coordinate")]
+    VariableTwice {
+        /// The name, `component.coordinate`.
+        variable: String,
+    },
     /// Nothing says in which state a component starts.
     #[error(
         "component `{component}` has no initial state: give its automaton one with `initially`, \

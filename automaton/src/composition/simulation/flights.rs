@@ -3,7 +3,8 @@
 use pleach_continuous::flow::VectorField;
 use pleach_guards::{Enclosure, Interval, Verdict};
 
-use super::{Due, Failure, Halt, Simulation};
+use super::{Due, Failure, Halt, Move, Simulation};
+use crate::composition::blueprint::Condition;
 use crate::composition::field::Field;
 use crate::composition::flight::{Flight, Plan};
 use crate::composition::jumps::Standing;
@@ -16,6 +17,8 @@ use crate::zeno::{Zeno, ZenoDetector};
 /// The largest part of the state by which a landing may be outside an invariant. Margins of smooth
 /// guards stay far below it; those that are only signs are not believed.
 const LARGEST_ALLOWANCE: f64 = 1e-9;
+/// By how much two shares of one mixture of flows may differ, as they are rounded.
+const SAME: f64 = 1e-6;
 
 impl<'a> Simulation<'a> {
     /// Plans the flow of a group from here on, unless that is done.
@@ -148,7 +151,7 @@ impl<'a> Simulation<'a> {
         Field::of(self.composition, parts, locations, start)
     }
 
-    /// Whether the last two jumps go back and forth over a boundary to which the flows of both
+    /// Whether the last two jumps go back and forth over one boundary to which the flows of both
     /// sides lead.
     pub(super) fn sliding(&self) -> Option<Sliding> {
         let [Some(there), Some(back)] = self.latest else { return None };
@@ -157,8 +160,8 @@ impl<'a> Simulation<'a> {
             return None;
         }
         let component = &self.composition.components[there.component];
-        let guard = &component.mode(there.source).leaving[there.transition].guard;
-        let margins = |location: usize| -> Vec<f64> {
+        let guard_of = |one: &Move| &component.mode(one.source).leaving[one.transition].guard;
+        let margins = |guard: &Condition, location: usize| -> Vec<f64> {
             let mut locations = self.locations.clone();
             locations[there.component] = location;
             let field = self.field(component.group, &locations);
@@ -174,14 +177,21 @@ impl<'a> Simulation<'a> {
                 .map(|one| one.margin(&states, &component.places, 0.0).rate.midpoint())
                 .collect()
         };
-        let sides = margins(there.source).into_iter().zip(margins(there.target));
-        let (here, beyond) =
-            sides.into_iter().find(|(here, beyond)| *here > 0.0 && *beyond < 0.0)?;
-        Some(Sliding {
-            component: there.component,
-            locations: [there.source, there.target],
-            share: here / (here - beyond),
-        })
+        // For each boundary that a jump crosses and both flows lead to: the share of the flow beyond
+        // it in the mixture that stays on it.
+        let shares = |one: &Move| -> Vec<f64> {
+            let guard = guard_of(one);
+            let sides = margins(guard, one.source).into_iter().zip(margins(guard, one.target));
+            let met = sides.filter(|(here, beyond)| *here > 0.0 && *beyond < 0.0);
+            met.map(|(here, beyond)| here / (here - beyond)).collect()
+        };
+        // Where the jump back crosses another boundary, the mixture that stays on the one leaves the other.
+        let returning = shares(&back);
+        let is_one = |share: &f64| {
+            returning.is_empty() || returning.iter().any(|back| (share + back - 1.0).abs() < SAME)
+        };
+        let share = shares(&there).into_iter().find(is_one)?;
+        Some(Sliding { component: there.component, locations: [there.source, there.target], share })
     }
 
     /// Whether the group is outside an invariant, by however little.

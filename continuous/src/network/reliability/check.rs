@@ -30,7 +30,7 @@ pub enum BrokenRequirement {
     },
     /// R is not in [0, 1], not 1 within l, or not 0 from u on.
     #[error(
-        "the reliability at {distance} is {reliability}: it must be in [0, 1], 1 up to l and 0 \\
+        "the reliability at {distance} is {reliability}: it must be in [0, 1], 1 up to l and 0 \
          from u on"
     )]
     Value {
@@ -47,7 +47,7 @@ pub enum BrokenRequirement {
     },
     /// The slope is positive, or not the derivative of R.
     #[error(
-        "the slope at {distance} is {slope}, where the difference quotient is {quotient}: it must \\
+        "the slope at {distance} is {slope}, where the difference quotient is {quotient}: it must \
          be the derivative, and not positive"
     )]
     Slope {
@@ -66,7 +66,7 @@ pub enum BrokenRequirement {
     },
     /// The inverse does not lead to the largest distance of a reliability.
     #[error(
-        "the distance for a reliability of {reliability} is given as {distance}, where the \\
+        "the distance for a reliability of {reliability} is given as {distance}, where the \
          reliability is different"
     )]
     Inverse {
@@ -251,6 +251,27 @@ mod tests {
         assert!(matches!(broken(Spoilt::Inverse), Broken::Inverse { .. }));
         let Broken::NotConvex { distance } = broken(Spoilt::Stairs) else { panic!("convex") };
         assert!((0.4..0.6).contains(&distance), "{distance}");
+    }
+
+    #[test]
+    fn what_is_broken_is_told_on_one_line() {
+        for model in [Spoilt::Plateau, Spoilt::Slope, Spoilt::Inverse] {
+            let told = check(&model).unwrap_err().to_string();
+            assert!(!told.contains(['\n', '\\']), "{told}");
+        }
+    }
+
+    /// The range less the margin is rounded; from there on nothing arrives.
+    #[test]
+    fn a_margin_takes_nothing_but_its_length_from_the_range() {
+        for (range, margin) in [(3.65, 0.353), (0.86, 0.18), (3.47, 0.611)] {
+            let link = CubicReliability::new(0.4, range).unwrap();
+            let link = WithMargin::new(link, margin).unwrap();
+            assert_eq!(link.reliability(link.range()), 0.0);
+            assert_eq!(link.slope(link.range()), 0.0);
+            assert_eq!(link.expected_transmissions(link.range()), f64::INFINITY);
+            assert_eq!(check(&link), Ok(()), "{link:?}");
+        }
     }
 
     #[test]

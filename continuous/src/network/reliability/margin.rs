@@ -36,15 +36,22 @@ impl<L: LinkReliability> WithMargin<L> {
             Err(ReliabilityError::Margin { margin, max_range: link.range() })
         }
     }
+
+    /// The distance at which the model is read. From the range on, whatever rounding does to that, it is
+    /// at least the range of the model.
+    fn read_at(&self, distance: f64) -> f64 {
+        let longer = distance + self.margin;
+        if distance >= self.range() { longer.max(self.link.range()) } else { longer }
+    }
 }
 
 impl<L: LinkReliability> LinkReliability for WithMargin<L> {
     fn reliability(&self, distance: f64) -> f64 {
-        self.link.reliability(distance + self.margin)
+        self.link.reliability(self.read_at(distance))
     }
 
     fn slope(&self, distance: f64) -> f64 {
-        self.link.slope(distance + self.margin)
+        self.link.slope(self.read_at(distance))
     }
 
     fn range(&self) -> f64 {
@@ -61,6 +68,6 @@ impl<L: LinkReliability> LinkReliability for WithMargin<L> {
     }
 
     fn expected_transmissions(&self, distance: f64) -> f64 {
-        self.link.expected_transmissions(distance + self.margin)
+        self.link.expected_transmissions(self.read_at(distance))
     }
 }

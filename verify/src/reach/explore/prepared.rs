@@ -14,6 +14,8 @@ pub(super) struct Prepared {
     pub staying: Vec<HalfSpace>,
     /// What they stay in until a jump has to be taken: the number of the jump, and the half-space.
     pub waiting: Vec<(usize, HalfSpace)>,
+    /// Whether no time passes, because a jump whose guard always holds has to be taken.
+    pub is_urgent: bool,
 }
 
 impl Prepared {
@@ -44,7 +46,18 @@ impl Prepared {
             [only] => only.half_spaces.clone(),
             _ => Vec::new(),
         };
-        Prepared { template: Arc::new(template), staying, waiting: Prepared::waiting(place) }
+        let waiting = Prepared::waiting(place);
+        let is_urgent = Prepared::is_urgent(place);
+        Prepared { template: Arc::new(template), staying, waiting, is_urgent }
+    }
+
+    /// Whether a jump has to be taken in every state.
+    fn is_urgent(place: &Mode) -> bool {
+        let is_always = |conjunction: &Conjunction| *conjunction == Conjunction::default();
+        place
+            .jumps
+            .iter()
+            .any(|jump| jump.is_forced && jump.guard.alternatives.iter().any(is_always))
     }
 
     /// A jump that has to be taken where one affine comparison holds keeps flows out of there.
