@@ -17,11 +17,12 @@ use crate::discrete::Location as _;
 use crate::story;
 use crate::trace::{TraceEntry, TraceError, TraceReader};
 use mcap::records::MessageHeader;
+use mcap::write::NoSeek;
 use mcap::{McapError, WriteOptions, Writer};
 use scene::{Frame, Stamp};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::{BufRead, Seek, Write};
+use std::io::{BufRead, Write};
 use thiserror::Error;
 
 /// Why a trace cannot be recorded.
@@ -69,7 +70,7 @@ const INFO: u8 = 2;
 ///
 /// # Errors
 /// When the trace cannot be read or the recording cannot be written.
-pub fn write<R: BufRead, W: Write + Seek>(
+pub fn write<R: BufRead, W: Write>(
     trace: TraceReader<R>,
     output: W,
 ) -> Result<u64, RecordingError> {
@@ -117,16 +118,17 @@ enum Topic {
 }
 
 /// A recording under way.
-struct Recording<W: Write + Seek> {
-    writer: Writer<W>,
+struct Recording<W: Write> {
+    /// Outputs may be pipes: chunks are put together in memory.
+    writer: Writer<NoSeek<W>>,
     channels: [u16; 4],
     messages: u64,
 }
 
-impl<W: Write + Seek> Recording<W> {
+impl<W: Write> Recording<W> {
     fn new(output: W) -> Result<Self, RecordingError> {
-        let options = WriteOptions::new().compression(None).library("pleach");
-        let mut writer = options.create(output)?;
+        let options = WriteOptions::new().compression(None).library("pleach").disable_seeking(true);
+        let mut writer = options.create(NoSeek::new(output))?;
         let mut schema =
             |name: &str, text: &str| writer.add_schema(name, "jsonschema", text.as_bytes());
         let scene = schema("foxglove.SceneUpdate", include_str!("recording/scene_update.json"))?;

@@ -172,6 +172,30 @@ fn said(bytes: &[u8]) -> String {
 }
 
 /// The rows of comma-separated values, none of which has a comma in it.
+/// A recording on the standard output is the one that a file gets, and no file is called `-`.
+#[cfg(feature = "mcap")]
+#[test]
+fn recordings_go_to_the_standard_output() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("recordings");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let [trace, file] = ["few.jsonl", "few.mcap"].map(|name| folder.join(name));
+    let run = ["run", "scenarios/too-few.toml", "--no-figures", "-q", "--trace"];
+    pleach(&[&run[..], &[trace.to_str().unwrap()]].concat());
+    let export = |recording: &str| {
+        let program = Command::new(env!("CARGO_BIN_EXE_pleach"))
+            .current_dir(&folder)
+            .args(["export", "few.jsonl", recording])
+            .output()
+            .expect("the program starts");
+        assert_eq!(program.status.code(), Some(0), "{}", said(&program.stderr));
+        program.stdout
+    };
+    assert!(String::from_utf8_lossy(&export("few.mcap")).starts_with("few.mcap: "));
+    assert!(export("-") == std::fs::read(file).unwrap());
+    assert!(!folder.join("-").exists());
+}
+
 fn rows(csv: &str) -> Vec<Vec<&str>> {
     csv.lines().map(|line| line.split(',').collect()).collect()
 }
@@ -192,6 +216,30 @@ fn a_sweep_gives_a_table_and_the_worst_status() {
     }
     assert_eq!(pleach(&arguments).stdout, output.stdout, "the same on any number of threads");
     assert!(said(&output.stderr).contains("step limit"), "the table for people goes elsewhere");
+}
+
+/// A run that comes to nothing leaves the tables of those before it.
+#[test]
+fn tables_are_kept_until_there_are_others() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [csv, json] = ["kept.csv", "kept-table.json"].map(|name| folder.join(name));
+    let tables = ["--csv", csv.to_str().unwrap(), "--json", json.to_str().unwrap()];
+    for table in [&csv, &json] {
+        std::fs::write(table, "of before").unwrap();
+    }
+    let run = ["run", "scenarios/too-few.toml", "--no-figures", "-q"];
+    let broken = ["--trace", "no/such/folder/t.jsonl"];
+    assert_eq!(pleach(&[&run[..], &tables, &broken].concat()).status.code(), Some(2));
+    for table in [&csv, &json] {
+        assert_eq!(std::fs::read_to_string(table).unwrap(), "of before");
+    }
+    pleach(&[&run[..], &tables].concat());
+    assert!(std::fs::read_to_string(&csv).unwrap().starts_with("run,source,scenario"));
+    assert!(std::fs::read_to_string(&json).unwrap().starts_with('['));
+
+    let nowhere = pleach(&[&run[..], &["--csv", "no/such/folder/t.csv"]].concat());
+    assert_eq!(nowhere.status.code(), Some(2));
+    assert!(said(&nowhere.stderr).contains("t.csv: cannot be created"), "{nowhere:?}");
 }
 
 /// Each column of the table holds what the run itself says.

@@ -8,6 +8,7 @@ use pleach::automaton::network::{Crash, NodeFaults};
 use pleach::automaton::node::MessageFaults;
 use pleach::judge::{Verdict, judge};
 use pleach::mission;
+use pleach::page::of_trace;
 use pleach::trace::{TraceReader, TraceWriter};
 use pleach::verify::network::Property;
 use pleach::verify::network::storm::{Kind, Storm, draw};
@@ -92,6 +93,33 @@ fn a_robot_that_stops_is_a_body_and_nothing_else() {
     }
     let Verdict::Violated(violation) = verdict(&creeps) else { panic!("it is judged sound") };
     assert_eq!(violation.property, Property::Standstill, "{violation}");
+}
+
+/// The page says by what it judges, as the judge does, and shows when robots stop and restart.
+#[test]
+fn pages_of_missions_with_faults_say_so() {
+    let crash = Crash { time: 30.0, inputs: 0, back: Some(60.0) };
+    let faults = NodeFaults { crash: Some(crash), ..NodeFaults::default() };
+    let storm = Storm { nodes: vec![(3, faults)], ..lossy() };
+    let page_of = |lines: &[Value]| {
+        let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+        of_trace(text.as_bytes()).unwrap()
+    };
+    let says = |page: &str| page.contains("; judged by what must hold under any fault</p>");
+    let page = page_of(&trace_of("redundant-node", &storm));
+    assert!(says(&page));
+    for (at, event, text) in [
+        (30, "stopped", "robot 3 has stopped, or is not heard"),
+        (60, "restarted", "robot 3 is back"),
+    ] {
+        let told = format!(r#"{{"at":{at},"event":"{event}","telling":true,"text":"{text}"}}"#);
+        assert_eq!(page.matches(&told).count(), 1, "{told}");
+        assert_eq!(page.matches(&format!(r#""event":"{event}""#)).count(), 1, "{event}");
+    }
+    let mut whole = sound();
+    assert!(says(&page_of(&whole)));
+    whole[0].as_object_mut().unwrap().remove("faults");
+    assert!(!says(&page_of(&whole)));
 }
 
 /// Whether a route or an edge of the tree begins or ends at robot 3.

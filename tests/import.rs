@@ -420,6 +420,18 @@ fn maps_that_are_none_are_refused() {
         ("j.svg", "<svg><rect width='9' height='9'/>", "it is cut off"),
         ("m.svg", "<html><svg/></html>", "byte 0: the outermost element is html, not svg"),
         ("k.svg", "<svg><rect width='1e300' height='1e300'/></svg>", "a coordinate is 1e300"),
+        (
+            "p.svg",
+            "<svg><rect width='nan' height='9'/></svg>",
+            r#"width of rect is "nan": give a number"#,
+        ),
+        ("q.svg", "<svg><circle r='1e999'/></svg>", r#"r of circle is "1e999": give a number"#),
+        (
+            "r.svg",
+            "<svg><polygon points='0,0 9,0 nan,9'/></svg>",
+            r#"points of polygon: "nan" is no number"#,
+        ),
+        ("s.svg", "<svg><polyline points='0,0 9,-inf'/></svg>", r#"points of polyline: "-inf" is"#),
         ("l.map", "type octile\nheight 1\nwidth 2\nmap\n@T\n", "no cell of the map is free"),
         ("h.txt", "", "the ending says no kind of map"),
     ] {
@@ -428,6 +440,21 @@ fn maps_that_are_none_are_refused() {
         let error = import::read(&path, &Reading::default()).unwrap_err().to_string();
         assert!(error.contains(said), "{name}: {error}");
     }
+}
+
+/// What a scenario is imported from stands in comments, whatever characters are in it.
+#[test]
+fn comments_of_scenarios_stay_comments() {
+    let plan = plan("cellar.map", &Reading::default());
+    let (scenario, _) = import::skeleton(&plan, &Choices::named("cellar")).unwrap();
+    let notes = ["one\r\nname = 2".to_owned()];
+    let text = import::text(&scenario, "a\nname = 1\u{7}.map", &notes);
+    assert!(
+        text.starts_with("# Imported from a\\nname = 1\\u{7}.map.\n# - one\\r\\nname = 2\n"),
+        "{text}"
+    );
+    let read = pleach::scenario_file::parse_with(&text, Path::new("it.toml"), &[]).unwrap();
+    assert_eq!(read.name, "cellar");
 }
 
 /// A wall whose ring is left open keeps all its corners: without one of them, robots would get through.

@@ -26,6 +26,18 @@ fn every_faulty_scenario_is_refused_with_a_clear_message() {
     }
 }
 
+/// Bounds that are worked out are told as a person writes them.
+#[test]
+fn bounds_are_told_without_rounding() {
+    let text = std::fs::read_to_string("scenarios/too-few.toml").unwrap();
+    let told = |setting: &str| {
+        let setting: Setting = setting.parse().unwrap();
+        parse_with(&text, Path::new("it.toml"), &[setting]).unwrap_err().to_string()
+    };
+    let far = told("link.max_range=1e31");
+    assert!(far.contains("1e31 is out of range: it must lie from 1e-30 to 1e30"), "{far}");
+}
+
 /// What touches is no mistake: it is told how it is taken, and the mission is run on it.
 #[test]
 fn scenarios_whose_polygons_touch_are_taken_with_a_note() {

@@ -3,8 +3,8 @@
 use crate::command_line::pleach;
 use crate::generated::keep_up_to_date;
 use pleach::guards::Interval;
-use pleach::spaceex::{self, Problem, Verdict};
-use pleach::verify::reach::{Completion, Directions, Effort};
+use pleach::spaceex::{self, Initial, Problem, Verdict, Written};
+use pleach::verify::reach::{Completion, Directions, Effort, StateSet};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -65,22 +65,23 @@ fn networks_are_products() {
     assert_eq!(verdict(&problem([TIMERS[0], &full])), Verdict::Violated);
 }
 
+fn write(problem: &Problem) -> Written {
+    spaceex::write(
+        &problem.automata[0],
+        &problem.uncertain,
+        &problem.initial,
+        &problem.forbidden,
+        &problem.settings,
+        &problem.shown,
+    )
+    .unwrap()
+}
+
 /// What is written reads back as the same automaton and the same question.
 #[test]
 fn what_is_written_is_read_back() {
     for files in [BALL, TIMERS, RELAY] {
         let first = problem(files);
-        let write = |problem: &Problem| {
-            spaceex::write(
-                &problem.automata[0],
-                &problem.uncertain,
-                &problem.initial,
-                &problem.forbidden,
-                &problem.settings,
-                &problem.shown,
-            )
-            .unwrap()
-        };
         let written = write(&first);
         let second = problem([&written.model, &written.configuration]);
         let names = |problem: &Problem| -> Vec<String> {
@@ -92,6 +93,43 @@ fn what_is_written_is_read_back() {
         assert_eq!(write(&second), written);
         assert_eq!((&second.settings, &second.shown), (&first.settings, &first.shown));
     }
+}
+
+/// Comparisons between variables, strict ones, and curved ones are written with the box of the initial states.
+#[test]
+fn initial_states_are_written_with_all_that_bounds_them() {
+    let begin = "10 <= x & x <= 10.2 & 0 <= v & v <= 0.1 & loc(one)==flying & ";
+    let ball = |more: &str, forbidden: &str| {
+        let start = BALL[1]
+            .replace("10 <= x <= 10.2 & v == 0 & loc(one)==flying", &format!("{begin}{more}"));
+        problem([BALL[0], &start.replace("x >= 10.25", forbidden)])
+    };
+    for more in [
+        "x + v <= 10.05",
+        "x + 2*v < 10.05",
+        "x*x + v*v <= 101",
+        "x < 10.05",
+        "x - v == 10.05",
+        "10.1 > x + v*v",
+    ] {
+        let first = ball(more, "x >= 10.15");
+        let written = write(&first);
+        let second = problem([&written.model, &written.configuration]);
+        assert_eq!(second.initial, first.initial, "{more}: {}", written.configuration);
+        assert_eq!(write(&second), written);
+    }
+    let first = ball("x + v <= 10.05", "x >= 10.15");
+    let written = write(&first);
+    let second = problem([&written.model, &written.configuration]);
+    assert_eq!((verdict(&first), verdict(&second)), (Verdict::Holds, Verdict::Holds));
+
+    // No list of comparisons says what is in a zonotope.
+    let around = Initial {
+        states: StateSet::from_zonotope(first.initial[0].states.to_zonotope()),
+        ..first.initial[0].clone()
+    };
+    let error = spaceex::write(&first.automata[0], &[], &[around], &[], &first.settings, &[]);
+    assert!(error.unwrap_err().starts_with("initial states that are a zonotope cannot be written"));
 }
 
 /// `room.lamp.h` is the heat of the room, `h` of the whole; `room.lamp.age` is the lamp's own; the lamp's
@@ -365,6 +403,29 @@ fn inputs_have_bounds_in_every_location() {
     assert!(other.contains("[0, 1] in location `A`, and in [5, 6] in `B`"), "{other}");
 }
 
+/// No run has an input at the end of a strict bound, though what is enclosed has it.
+#[test]
+fn strict_bounds_of_inputs_are_not_reached() {
+    let asked = |bounds: &str, forbidden: &str| {
+        let model = format!(
+            r#"<sspaceex><component id="s"><param name="x" type="real"/><param name="age" type="real"/>
+            <param name="u" type="real"/><location id="1" name="A"><invariant>{bounds}</invariant>
+            <flow>x'==u-4 &amp; age'==1</flow></location></component></sspaceex>"#
+        );
+        let question = format!("forbidden = \"{forbidden} & age >= 1\"\ntime-horizon = 2");
+        problem([&model, &format!("initially = \"x == 0 & age == 0\"\n{question}")])
+    };
+    assert_eq!(verdict(&asked("0&lt;=u &amp; u&lt;=4", "x >= 0")), Verdict::Violated);
+    for bounds in ["0&lt;=u &amp; u&lt;4", "0&lt;=u &amp; u&lt;=4 &amp; 4&gt;u"] {
+        let problem = asked(bounds, "x >= 0");
+        assert_eq!(verdict(&problem), Verdict::Undecided, "{bounds}");
+        let written = write(&problem);
+        let again = self::problem([&written.model, &written.configuration]);
+        assert_eq!(again.initial, problem.initial, "{}", written.configuration);
+        assert_eq!(verdict(&asked(bounds, "x >= -0.5")), Verdict::Violated, "{bounds}");
+    }
+}
+
 /// A location without transitions, beside others that have some: runs may begin in either.
 #[test]
 fn runs_may_begin_where_no_transition_leads() {
@@ -444,6 +505,23 @@ fn what_is_too_large_is_refused_and_inputs_are_not_overwritten() {
         pleach(&["reach", model, "--cfg", "tests/spaceex/bouncing-ball.cfg", "--svg", model]);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(std::fs::read_to_string(model).expect("it is there"), BALL[0]);
+}
+
+/// Each level of parentheses is looked through anew, so that they are counted first.
+#[test]
+fn conditions_are_nested_up_to_a_limit() {
+    let nested = |levels: usize| {
+        let forbidden = format!("{}x >= 10.25{}", "(".repeat(levels), ")".repeat(levels));
+        BALL[1].replace("x >= 10.25", &forbidden)
+    };
+    assert_eq!(problem([BALL[0], &nested(100)]).forbidden, problem(BALL).forbidden);
+    for levels in [101, 20_000] {
+        assert_eq!(
+            refusal(BALL[0], &nested(levels)),
+            "line 4 of the configuration: a condition has more than 100 levels of parentheses: leave out those that \
+             change nothing"
+        );
+    }
 }
 
 /// Whichever way `initially` is written, no run begins beyond it: one that did was taken for a counterexample.

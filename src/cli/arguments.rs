@@ -74,9 +74,9 @@ pub enum Command {
     ///
     /// Needs a build with the feature `mcap`.
     Export {
-        /// The trace, as `pleach run --trace` writes it
+        /// The trace, as `pleach run --trace` writes it, or `-` for the standard input
         trace: PathBuf,
-        /// The recording
+        /// The recording, or `-` for the standard output
         recording: PathBuf,
     },
     /// Draw one of the automata that robots, access points and the user run

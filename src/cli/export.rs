@@ -14,7 +14,9 @@ pub fn export(trace: &Path, recording: &Path) -> Result<Status, Failure> {
     let input = source::open(trace)
         .map_err(|source| ScenarioError::Unreadable { path: trace.into(), source })?;
     let reader = TraceReader::new(input).map_err(|error| failed(error.into()))?;
-    let messages = recording::write(reader, output::create_file(recording)?).map_err(failed)?;
-    output::say(&format!("{}: {messages} messages\n", recording.display()))?;
+    let messages = recording::write(reader, output::open(recording)?).map_err(failed)?;
+    if !source::is_standard(recording) {
+        output::say(&format!("{}: {messages} messages\n", recording.display()))?;
+    }
     Ok(Status::Done)
 }

@@ -4,7 +4,7 @@ use super::source;
 use super::status::Failure;
 use std::fmt::Display;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Writes lines to the error output. If it cannot be written, because it is closed for
@@ -36,7 +36,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
 }
 
 /// A new file, buffered.
-pub fn create_file(path: &Path) -> Result<BufWriter<Named<File>>, Failure> {
+fn create_file(path: &Path) -> Result<BufWriter<Named<File>>, Failure> {
     let name = path.display().to_string();
     let file = File::create(path).map(|output| BufWriter::new(Named { name, output }));
     file.map_err(|source| Failure::Creation { path: path.to_owned(), source })
@@ -106,11 +106,5 @@ impl<W: Write> Write for Named<W> {
 
     fn flush(&mut self) -> io::Result<()> {
         self.output.flush().map_err(|error| self.told(error))
-    }
-}
-
-impl<W: Seek> Seek for Named<W> {
-    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
-        self.output.seek(place).map_err(|error| self.told(error))
     }
 }

@@ -150,19 +150,19 @@ fn say(arguments: &RunArguments, text: &str) -> io::Result<()> {
     output::say(&wrapped(terminal::width()))
 }
 
-/// A table that cannot be written is told before the missions, not after them.
+/// A table that cannot be written is told before the missions, not after them; until then the one that is there
+/// stays.
 fn check_tables(arguments: &RunArguments) -> Result<(), Failure> {
-    for path in [&arguments.csv, &arguments.json].into_iter().flatten() {
-        output::open(path)?;
-    }
-    Ok(())
+    [&arguments.csv, &arguments.json].into_iter().flatten().try_for_each(|path| output::check(path))
 }
 
+/// Writes the tables, no file if no run has begun.
 fn write_tables(arguments: &RunArguments, records: &[Record]) -> Result<(), Failure> {
-    if let Some(path) = &arguments.csv {
+    let is_wanted = |path: &&PathBuf| !records.is_empty() || is_standard(path);
+    if let Some(path) = arguments.csv.as_ref().filter(is_wanted) {
         write_csv(records, output::open(path)?)?;
     }
-    if let Some(path) = &arguments.json {
+    if let Some(path) = arguments.json.as_ref().filter(is_wanted) {
         write_json(records, output::open(path)?)?;
     }
     Ok(())

@@ -322,8 +322,11 @@ fn rounded_to(place: [f64; 2], extent: f64) -> [f64; 2] {
     place.map(|value| format!("{value:.decimals$}").parse().unwrap_or(value))
 }
 
+/// A rate to four decimals, or to two digits where these are less; rounded down, so that the sum stays what it was.
 fn rounded_rate(rate: f64) -> f64 {
-    (rate * 1e4).floor() / 1e4
+    let decimals = (1.0 - rate.log10().floor()).max(4.0);
+    let scale = 10f64.powf(decimals);
+    (rate * scale).floor() / scale
 }
 
 /// A number without the rounding of its last digits.
@@ -333,10 +336,10 @@ fn trimmed(value: f64) -> f64 {
 
 /// The scenario as a file for people: places in rows, with comments.
 pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
-    let mut text = format!("# Imported from {origin}.\n");
+    let mut text = format!("# Imported from {}.\n", in_a_line(origin));
     for note in notes {
         // Writing into a text does not fail.
-        let _ = writeln!(text, "# - {note}");
+        let _ = writeln!(text, "# - {}", in_a_line(note));
     }
     let _ = write!(text, "\nname = {:?}\n\n[workspace]\n", scenario.name);
     let _ = writeln!(text, "boundary = {}", polygon(&scenario.workspace.boundary, ""));
@@ -368,6 +371,12 @@ pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
     text
 }
 
+/// A text as a comment can hold it: line breaks and other control characters are escaped.
+fn in_a_line(text: &str) -> String {
+    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.into() };
+    text.chars().map(escaped).collect()
+}
+
 /// A polygon with a few corners in each line.
 fn polygon(ring: &[[f64; 2]], indent: &str) -> String {
     const IN_A_LINE: usize = 6;
@@ -376,4 +385,17 @@ fn polygon(ring: &[[f64; 2]], indent: &str) -> String {
         format!("{indent}    {},\n", corners.join(", "))
     };
     format!("[\n{}{indent}]", ring.chunks(IN_A_LINE).map(line).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Robots without a rate would say nothing.
+    #[test]
+    fn rates_of_many_robots_are_above_zero() {
+        let rates =
+            [1, 7, 8, 600, 6001, 65_535].map(|robots| rounded_rate(RATES / f64::from(robots)));
+        assert_eq!(rates, [0.6, 0.0857, 0.075, 0.001, 0.000_099, 0.000_009_1]);
+    }
 }

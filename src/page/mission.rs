@@ -6,7 +6,7 @@ use pleach_automaton::network::record::{End, Faults, MissionEvent, Outcome, Purs
 use pleach_automaton::network::scenario::{Scenario, Settings, ValidScenario};
 use pleach_continuous::geometry::{Destination, FreeSpace};
 use pleach_discrete::network::activity::may_follow;
-use pleach_verify::network::{Referee, Violation};
+use pleach_verify::network::{Referee, Violation, judged_faults};
 use serde_json::{Map, Value, json};
 
 use crate::figures::{self, Mark, TaskState, Walls};
@@ -36,10 +36,14 @@ pub struct MissionPage {
     destinations: Vec<Destination>,
     summary: Summary,
     judge: Referee<'static>,
+    /// Whether that is by what no fault may break, and not by all definitions.
+    has_faults: bool,
     /// What the judge found; it looks no further.
     violation: Option<Violation>,
     steps: Steps,
     events: Vec<Value>,
+    /// The nodes that were absent in the control period before.
+    absent: Vec<usize>,
     end: Option<End>,
 }
 
@@ -63,9 +67,11 @@ impl MissionPage {
             walls: Walls::new(&scenario.workspace),
             summary: Summary::new(scenario),
             judge: Referee::new(scenario, faults, may_follow),
+            has_faults: !judged_faults(&settings, faults).are_none(),
             violation: None,
             steps: Steps::new(decimals.clamp(0.0, 9.0) as i32),
             events: Vec::new(),
+            absent: Vec::new(),
             end: None,
             scenario: scenario.with_defaults(),
             settings,
@@ -155,6 +161,7 @@ impl MissionPage {
         events: &[MissionEvent],
     ) -> io::Result<[f64; 2]> {
         self.summary.observe(snapshot, events)?;
+        self.note_attendance(snapshot);
         for event in events {
             self.events.push(event_data(snapshot.step, event)?);
         }
@@ -170,6 +177,27 @@ impl MissionPage {
             self.violation = self.judge.observe(snapshot, events).err();
         }
         Ok(distances)
+    }
+
+    /// Tells which nodes have stopped or are back since the control period before.
+    fn note_attendance(&mut self, snapshot: &Snapshot) {
+        let robots = self.scenario.robot.len();
+        let changed = |these: &[usize], others: &[usize], event: &str, what: &str| {
+            let new = these.iter().filter(|node| !others.contains(node));
+            let told = new.map(|&node| {
+                let text = match node.checked_sub(robots) {
+                    None => format!("robot {node} {what}"),
+                    Some(number) => format!("access point {number} {what}"),
+                };
+                json!({ "event": event, "at": snapshot.step, "text": text, "telling": true })
+            });
+            told.collect::<Vec<_>>()
+        };
+        let (before, now) = (&self.absent, &snapshot.absent);
+        let stopped = changed(now, before, "stopped", "has stopped, or is not heard");
+        let restarted = changed(before, now, "restarted", "is back");
+        self.events.extend(stopped.into_iter().chain(restarted));
+        self.absent.clone_from(now);
     }
 
     fn derived(&self, snapshot: &Snapshot, distances: [f64; 2]) -> Map<String, Value> {
@@ -203,8 +231,17 @@ impl MissionPage {
 
 /// The summary.
 impl MissionPage {
-    /// How the run ended, or what is wrong with its record unless the run says itself that it was stopped for that.
+    /// How the run ended, and by what it is judged if not by all definitions.
     fn outcome(&self) -> Shown {
+        let mut shown = self.ending();
+        if self.has_faults {
+            shown.text += "; judged by what must hold under any fault";
+        }
+        shown
+    }
+
+    /// How the run ended, or what is wrong with its record unless the run says itself that it was stopped for that.
+    fn ending(&self) -> Shown {
         let serviced = self.summary.serviced();
         let tally = format!("{serviced} of {} tasks serviced", self.scenario.task.len());
         let periods = self.steps.count();

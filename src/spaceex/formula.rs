@@ -51,8 +51,36 @@ impl Side {
 /// How many alternatives a condition may have.
 const MOST_ALTERNATIVES: usize = 4096;
 
+/// How deep parentheses may stand in each other: as deep as in a formula. What is done for each level then takes a time
+/// that grows with the length of a condition, and not with its square.
+const MOST_NESTED: usize = 100;
+
 /// A condition as alternatives of clauses that hold together.
 pub(super) fn alternatives(text: &str) -> Result<Vec<Vec<Clause>>, String> {
+    if nesting(text) > MOST_NESTED {
+        return Err(format!(
+            "a condition has more than {MOST_NESTED} levels of parentheses: leave out those that change nothing"
+        ));
+    }
+    alternatives_within(text)
+}
+
+/// How deep parentheses stand in each other.
+fn nesting(text: &str) -> usize {
+    let (mut depth, mut most) = (0usize, 0);
+    for character in text.chars() {
+        match character {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        most = most.max(depth);
+    }
+    most
+}
+
+/// The alternatives of a condition that is not nested too deep.
+fn alternatives_within(text: &str) -> Result<Vec<Vec<Clause>>, String> {
     let text = stripped(text);
     if text.is_empty() {
         return Ok(vec![vec![]]);
@@ -62,15 +90,20 @@ pub(super) fn alternatives(text: &str) -> Result<Vec<Vec<Clause>>, String> {
         return Err(format!("`{text}` has an alternative that says nothing: leave out the `|`"));
     }
     if parts.len() > 1 {
-        return Ok(parts.into_iter().map(alternatives).collect::<Result<Vec<_>, _>>()?.concat());
+        let parts = parts.into_iter().map(alternatives_within);
+        return Ok(parts.collect::<Result<Vec<_>, _>>()?.concat());
     }
     let parts = split(text, '&');
     if parts.iter().any(|part| part.trim().is_empty()) {
         return Err(format!("`{text}` has a part that says nothing: leave out the `&`"));
     }
     if parts.len() > 1 {
-        return parts.into_iter().try_fold(vec![vec![]], |product, part| {
-            let factors = alternatives(part)?;
+        return parts.into_iter().try_fold(vec![vec![]], |mut product, part| {
+            let factors = alternatives_within(part)?;
+            if let [only] = &factors[..] {
+                product.iter_mut().for_each(|clauses| clauses.extend_from_slice(only));
+                return Ok(product);
+            }
             if product.len() * factors.len() > MOST_ALTERNATIVES {
                 return Err(format!(
                     "a condition comes to more than {MOST_ALTERNATIVES} alternatives where its parts with `|` are \

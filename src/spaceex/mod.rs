@@ -8,7 +8,7 @@
 //! | in the file | in the automaton |
 //! | --- | --- |
 //! | a number with a flow | a coordinate |
-//! | a number without a flow, bounded by invariants | an input, which varies within the bounds |
+//! | a number without a flow, bounded by invariants | an input, which varies within the bounds; what is enclosed has the ends of strict ones, too |
 //! | a constant that is bound, or given by `initially` | a parameter, uncertain where an interval is given |
 //! | a transition | one that may be taken; with `asap="true"`, has to be |
 //! | `x' >= a & x' <= b` in an assignment | any value within the bounds |
@@ -65,7 +65,8 @@ pub struct Initial {
     /// The states, over the coordinates and the parameters that do not vary.
     pub states: StateSet,
     /// The comparisons that hold of them and are strict or not affine: of the former the states hold the boundary,
-    /// too, of the latter what is beyond.
+    /// too, of the latter what is beyond. Strict bounds on inputs are among them: runs that are tried have one value of
+    /// an input throughout.
     pub condition: Predicate,
 }
 

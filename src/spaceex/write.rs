@@ -3,7 +3,9 @@
 use crate::automaton::{Assignment, Automaton, Coordinates, NewValue};
 use crate::discrete::{Event, Location, Urgency};
 use crate::guards::{Comparison, Expression, Predicate, Relation};
-use crate::verify::reach::{Directions, Forbidden, Settings, Uncertain};
+use crate::verify::reach::{
+    Directions, Forbidden, Polytope, Settings, StateSet, Template, Uncertain,
+};
 
 use super::Initial;
 
@@ -24,7 +26,7 @@ pub struct Written {
 /// # Errors
 ///
 /// A sentence that names what has no counterpart there: functions, predicates that are not
-/// conjunctions of comparisons, and formulas beyond arithmetic.
+/// conjunctions of comparisons, formulas beyond arithmetic, and initial states that are a zonotope.
 pub fn write<L: Location, E: Event, S: Coordinates>(
     automaton: &Automaton<L, E, S>,
     uncertain: &[Uncertain],
@@ -161,26 +163,23 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
             .collect();
         let mut begins = Vec::new();
         for one in initial {
-            let sides = names.iter().zip(one.states.hull());
-            let sides = sides.map(|(name, side)| {
-                format!("{} <= {name} & {name} <= {}", side.lower(), side.upper())
-            });
-            let states: Vec<String> = sides.chain(certain.iter().cloned()).collect();
-            let is_everywhere = one.locations.len() == self.automaton.locations().len();
-            if is_everywhere {
-                begins.push(states.join(" & "));
-                continue;
-            }
-            for location in &one.locations {
-                begins.push(format!("{} & loc(system)=={location}", states.join(" & ")));
+            let mut states = set(&one.states, &names)?;
+            states.extend(certain.iter().cloned());
+            for case in cases(&one.condition)? {
+                let held = [states.clone(), case].concat().join(" & ");
+                if one.locations.len() == self.automaton.locations().len() {
+                    begins.push(held);
+                    continue;
+                }
+                for location in &one.locations {
+                    begins.push(format!("{held} & loc(system)=={location}"));
+                }
             }
         }
         let mut ends = Vec::new();
         for one in forbidden {
-            let form = one.states.disjunctive_form(256).map_err(|error| error.to_string())?;
-            for case in form {
-                let case = case.into_iter().map(Predicate::Comparison);
-                let case = conjunction(&Predicate::all(case))?;
+            for case in cases(&one.states)? {
+                let case = if case.is_empty() { "true".to_owned() } else { case.join(" & ") };
                 ends.push(match &one.location {
                     Some(location) => format!("{case} & loc(system)=={location}"),
                     None => case,
@@ -212,9 +211,39 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
 
 /// A linear constraint whose boundary a direction is across.
 fn across(direction: &[f64], names: &[&str]) -> String {
+    at_most(direction, 0.0, names)
+}
+
+/// d · x ≤ b.
+fn at_most(direction: &[f64], bound: f64, names: &[&str]) -> String {
     let terms = direction.iter().zip(names).filter(|(entry, _)| **entry != 0.0);
     let terms = terms.map(|(entry, name)| format!("{entry} * {name}"));
-    format!("{} <= 0", terms.collect::<Vec<_>>().join(" + "))
+    format!("{} <= {bound}", terms.collect::<Vec<_>>().join(" + "))
+}
+
+/// A set as its sides, and what cuts the box between them.
+fn set(states: &StateSet, names: &[&str]) -> Result<Vec<String>, String> {
+    if states.has_zonotope() {
+        return Err("initial states that are a zonotope cannot be written: give their bounds as a box or a polytope".into());
+    }
+    let hull = states.hull();
+    let sides = names.iter().zip(hull);
+    let sides = sides
+        .map(|(name, side)| format!("{} <= {name} & {name} <= {}", side.lower(), side.upper()));
+    let cuts = states.polytope().into_iter().flat_map(|polytope| {
+        let around = Polytope::around(Template::clone(polytope.template()), hull);
+        let bounds = polytope.bounds().iter().zip(around.bounds().to_vec());
+        let cuts = polytope.template().directions().iter().zip(bounds);
+        let cuts = cuts.filter(|(_, (bound, widest))| **bound < *widest);
+        cuts.map(|(direction, (bound, _))| at_most(direction, *bound, names)).collect::<Vec<_>>()
+    });
+    Ok(sides.chain(cuts).collect())
+}
+
+/// The alternatives of a predicate, each as comparisons that hold together.
+fn cases(predicate: &Predicate) -> Result<Vec<Vec<String>>, String> {
+    let form = predicate.disjunctive_form(256).map_err(|error| error.to_string())?;
+    form.iter().map(|case| case.iter().map(compared).collect()).collect()
 }
 
 /// A conjunction of comparisons, in the spelling of keyboards.

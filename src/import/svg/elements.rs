@@ -117,8 +117,8 @@ impl Element {
     /// A number without a unit, or in user units (`px`).
     fn stated_number(&self, name: &str) -> Result<Option<f64>, String> {
         let number = |text: &str| {
-            let wrong = |_| format!("{name} of {} is {text:?}: give a number", self.name);
-            text.trim_end_matches("px").trim().parse().map_err(wrong)
+            let wrong = || format!("{name} of {} is {text:?}: give a number", self.name);
+            finite(text.trim_end_matches("px").trim()).ok_or_else(wrong)
         };
         self.attribute(name).map(number).transpose()
     }
@@ -143,4 +143,9 @@ impl Element {
         }
         element
     }
+}
+
+/// A finite number: infinite ones and those that are none can be written, too.
+pub(super) fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
 }

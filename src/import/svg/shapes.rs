@@ -1,6 +1,6 @@
 //! Shapes and their outlines.
 
-use super::elements::Element;
+use super::elements::{Element, finite};
 use kurbo::{Affine, BezPath, Circle, Ellipse, Line, Rect, RoundedRect, Shape};
 
 /// Circles become curves; those are as exact as can be before chords replace them.
@@ -54,8 +54,10 @@ fn rectangle(element: &Element) -> Result<BezPath, String> {
 fn polyline(element: &Element, is_closed: bool) -> Result<BezPath, String> {
     let text = element.attribute("points").unwrap_or_default();
     let words = text.split([' ', ',', '\t', '\n', '\r']).filter(|word| !word.is_empty());
-    let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
-    let numbers = numbers.map_err(|_| format!("points {text:?} are not numbers"))?;
+    let number = |word: &str| {
+        finite(word).ok_or_else(|| format!("points of {}: {word:?} is no number", element.name))
+    };
+    let numbers = words.map(number).collect::<Result<Vec<f64>, _>>()?;
     let mut path = BezPath::new();
     for (index, corner) in numbers.chunks_exact(2).enumerate() {
         let corner = (corner[0], corner[1]);

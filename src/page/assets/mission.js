@@ -284,6 +284,22 @@ function linkTable(mission, out, into) {
     element("tr", {}, ...["link", "T", "R", "T·R"].map(name => element("th", { scope: "col" }, name))), ...rows));
 }
 
+/** The marks of nodes that stop and restart: a cross, and an arrow upwards. */
+const ATTENDANCE = [
+  { name: "stopped", about: "node stopped, or not heard", strokes: [[[-0.8, -0.8], [0.8, 0.8]], [[-0.8, 0.8], [0.8, -0.8]]] },
+  { name: "restarted", about: "node back", strokes: [[[0, 0.9], [0, -0.9]], [[-0.7, -0.2], [0, -0.9], [0.7, -0.2]]] },
+];
+
+/** What stands on the time line, and the mark of each. */
+function timeMarks(mission) {
+  const known = new Map([...mission.moments, ...ATTENDANCE].map(mark => [mark.name, mark]));
+  const markOf = event => known.get(event.moment ?? event.event);
+  return {
+    isTelling: event => Boolean(markOf(event)) || event.event === "violated",
+    glyph: event => markOf(event) ? momentGlyph(markOf(event).strokes) : element("span", { class: "alarm" }, "!"),
+  };
+}
+
 /** The switches of the layers, and what the marks mean. */
 function layerPanel(parent, mission, plan) {
   const boxes = LAYERS.map(({ key, name, about, on }) => element("label", { title: about }, element("input", {
@@ -306,8 +322,10 @@ function layerPanel(parent, mission, plan) {
     return element("span", {}, canvas, mark.name);
   });
   const moments = mission.moments.map(moment => element("span", {}, momentGlyph(moment.strokes), moment.name));
+  const attendance = ATTENDANCE.filter(mark => mission.events.some(event => event.event === mark.name))
+    .map(mark => element("span", {}, momentGlyph(mark.strokes), mark.about));
   parent.append(
-    element("details", { open: true }, element("summary", {}, "Marks"), element("div", { class: "boxes" }, ...marks, ...moments)),
+    element("details", { open: true }, element("summary", {}, "Marks"), element("div", { class: "boxes" }, ...marks, ...moments, ...attendance)),
     element("details", { open: true }, element("summary", {}, "Layers"), element("div", { class: "boxes" }, ...boxes),
       element("p", { class: "quiet" }, "Links reach through walls; robots do not.")));
 }
@@ -324,7 +342,6 @@ function momentGlyph(strokes) {
 function showMission(data) {
   const mission = new Mission(data), selection = new Selection();
   const player = new Player({ end: mission.last, isWhole: true, events: mission.events });
-  const moments = new Map(mission.moments.map(moment => [moment.name, moment]));
   const clock = at => mission.period === 1 ? `k = ${Math.floor(at)}`
     : `k = ${Math.floor(at)} · t = ${written(at * mission.period, 4)} s`;
   const part = id => document.getElementById(id);
@@ -333,9 +350,7 @@ function showMission(data) {
   new Facts(part("facts"), mission, player, selection);
   layerPanel(part("layers"), mission, plan);
   new Transport(part("transport"), player, {
-    lanes, clock, unit: speed => `${speed} periods/s`, isTelling: event => Boolean(event.moment) || event.event === "violated",
-    glyph: event => event.moment ? momentGlyph(moments.get(event.moment).strokes)
-      : element("span", { class: "alarm" }, "!"),
+    lanes, clock, unit: speed => `${speed} periods/s`, ...timeMarks(mission),
   });
   new Story(part("story"), player, { clock, isTelling: event => event.telling, hasDetails: true });
   if (mission.count) missionCharts(part("charts"), mission, player, selection, lanes);

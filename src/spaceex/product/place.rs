@@ -72,7 +72,7 @@ impl Product<'_> {
     }
 
     /// A bound on an input alone.
-    fn is_input_bound(&self, clause: &Clause) -> bool {
+    pub(super) fn is_input_bound(&self, clause: &Clause) -> bool {
         let Clause::Compare { left, right, .. } = clause else { return false };
         let is_input = |side: &Side| {
             side.name().is_some_and(|name| self.inputs.iter().any(|(input, _)| input == name))

@@ -82,6 +82,7 @@ impl Product<'_> {
         let (line, alternatives) = &options.initially;
         let wrong = |problem: String| SpaceExError::Configuration { line: *line, problem };
         let names = self.names_of_states();
+        let open_inputs = self.strict_input_bounds()?;
         let mut initial = Vec::new();
         for clauses in alternatives {
             for clause in clauses {
@@ -109,7 +110,8 @@ impl Product<'_> {
             let values = Substitution::new(values);
             let mut strict = states_of(&mut clauses.iter())?;
             strict.retain(is_strict);
-            let strict = Predicate::all(strict).substitute(&values);
+            strict.extend(open_inputs.iter().cloned());
+            strict.iter_mut().for_each(|one| *one = one.substitute(&values));
             // All but the sides of the box cut it.
             let cuts = states_of(&mut clauses.iter().filter(|clause| bound(clause).is_none()))?;
             let cut = Predicate::all(cuts).substitute(&values);
@@ -125,7 +127,8 @@ impl Product<'_> {
                 let Some(states) = states else { continue };
                 // Nor do sets of states end where comparisons end that are not affine.
                 let others = conjunction.others.iter().cloned().map(Predicate::Comparison);
-                let condition = Predicate::all([strict.clone()].into_iter().chain(others));
+                let others = others.filter(|other| !strict.contains(other));
+                let condition = Predicate::all(strict.iter().cloned().chain(others));
                 initial.push(Initial { locations: locations.clone(), states, condition });
             }
         }
@@ -133,6 +136,29 @@ impl Product<'_> {
             return Err(wrong("`initially` allows no state".into()));
         }
         Ok(initial)
+    }
+
+    /// The bounds on inputs that exclude their boundary, in any location.
+    fn strict_input_bounds(&self) -> Result<Vec<Predicate>> {
+        let mut bounds = Vec::new();
+        for instance in &self.network.instances {
+            for place in &instance.component.locations {
+                let wrong = |problem| SpaceExError::Model { line: place.invariant.line, problem };
+                let clauses = instance.clauses(&place.invariant)?;
+                for clause in clauses.iter().filter(|clause| self.is_input_bound(clause)) {
+                    bounds.extend(predicate(clause).map_err(wrong)?);
+                }
+            }
+        }
+        bounds.retain(is_strict);
+        // Components and locations say the same of an input.
+        let mut known: Vec<Predicate> = Vec::new();
+        for bound in bounds {
+            if !known.contains(&bound) {
+                known.push(bound);
+            }
+        }
+        Ok(known)
     }
 
     /// Fails if a predicate reads what is no number of the system.

@@ -145,8 +145,13 @@ impl StateSet {
         Some(inside)
     }
 
+    /// Whether a zonotope is part of the description.
+    pub fn has_zonotope(&self) -> bool {
+        self.zonotope.is_some()
+    }
+
     /// The polytope that it is cut by, if there is one.
-    pub(super) fn polytope(&self) -> Option<&Polytope> {
+    pub fn polytope(&self) -> Option<&Polytope> {
         self.polytope.as_ref()
     }
 

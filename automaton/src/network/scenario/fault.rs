@@ -62,13 +62,13 @@ pub enum Problem {
     Zero,
     /// A number that is too small or too large to be meant.
     #[error(
-        "{} is out of range: it must lie from {} to {}", short(*value), short(*least), short(*most)
+        "{} is out of range: it must lie from {} to {}", short(*value), bound(*least), bound(*most)
     )]
     OutOfRange { value: f64, least: f64, most: f64 },
     /// A length that is too small or too large to be meant.
     #[error(
         "{} is out of range: it must lie from {} to max_range = {}",
-        short(*value), short(*least), short(*max_range)
+        short(*value), bound(*least), short(*max_range)
     )]
     LengthOutOfRange { value: f64, least: f64, max_range: f64 },
     /// More of something than can be meant.
@@ -122,7 +122,7 @@ pub enum Problem {
     /// l too close to u for the slope of the reliability to make sense.
     #[error(
         "{full_range} is too close to max_range = {max_range}: reliability needs a distance of \
-         at least {least} to fall from 1 to 0"
+         at least {} to fall from 1 to 0", bound(*least)
     )]
     RangesTooClose { full_range: f64, max_range: f64, least: f64 },
     /// e or m too large against ρ.
@@ -264,6 +264,11 @@ fn short(value: f64) -> String {
 /// A number that has been worked out, without the rounding of its last digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
+}
+
+/// A bound that has been worked out, as a person writes it.
+fn bound(value: f64) -> String {
+    short(rounded(value))
 }
 
 /// Which lengths to lower, where ρ is given if the service radius follows from it.
