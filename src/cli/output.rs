@@ -73,14 +73,16 @@ fn place_of(path: &Path) -> PathBuf {
     fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 
-/// Whether a file can be written, or for `-` the standard output: told before what takes long, and without a change
-/// of what is in it.
+/// Whether a file can be written, or for `-` the standard output: told before what takes long. A file that is there
+/// stays what it is, and one that is not there is not left behind.
 pub fn check(path: &Path) -> Result<(), Failure> {
     if source::is_standard(path) {
         return Ok(());
     }
+    let is_new = !path.exists();
     let file = File::options().append(true).create(true).open(path);
-    file.map(drop).map_err(|source| Failure::Creation { path: path.to_owned(), source })
+    let tried = file.and_then(|_| if is_new { fs::remove_file(path) } else { Ok(()) });
+    tried.map_err(|source| Failure::Creation { path: path.to_owned(), source })
 }
 
 fn standard() -> Named<io::StdoutLock<'static>> {
