@@ -48,16 +48,7 @@ impl<'a> Workshop<'a> {
         let mut left_out = BTreeSet::new();
         loop {
             let files = self.woven(faults, &left_out)?;
-            let sources = files.iter().map(|(file, woven)| (file.clone(), woven.text.clone()));
-            let mut sources: BTreeMap<String, String> = sources.collect();
-            for crate_root in crate_roots(files.keys().map(|file| &**file)) {
-                let source = match sources.remove(&crate_root) {
-                    Some(woven) => woven,
-                    None => read(self.root, &crate_root)?,
-                };
-                sources.insert(crate_root, source + &decision());
-            }
-            self.plant(&sources)?;
+            self.plant(&self.with_decision(&files)?)?;
             let woven: BTreeSet<usize> = files.values().flat_map(Woven::faults).collect();
             left_out
                 .extend(faults.iter().map(|(number, _)| *number).filter(|it| !woven.contains(it)));
@@ -92,6 +83,23 @@ impl<'a> Workshop<'a> {
             Ok((file.to_owned(), woven))
         });
         woven.collect()
+    }
+
+    /// The text of these files, and of the roots of their crates with the function that chooses a fault.
+    fn with_decision(
+        &self,
+        files: &BTreeMap<String, Woven>,
+    ) -> Result<BTreeMap<String, String>, Error> {
+        let texts = files.iter().map(|(file, woven)| (file.clone(), woven.text.clone()));
+        let mut sources: BTreeMap<String, String> = texts.collect();
+        for crate_root in crate_roots(files.keys().map(|file| &**file)) {
+            let source = match sources.remove(&crate_root) {
+                Some(woven) => woven,
+                None => read(self.root, &crate_root)?,
+            };
+            sources.insert(crate_root, source + &decision());
+        }
+        Ok(sources)
     }
 
     /// What the compiler objects to in the libraries of the copy.
