@@ -171,7 +171,6 @@ fn said(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// The rows of comma-separated values, none of which has a comma in it.
 /// A recording on the standard output is the one that a file gets, and no file is called `-`.
 #[cfg(feature = "mcap")]
 #[test]
@@ -196,6 +195,7 @@ fn recordings_go_to_the_standard_output() {
     assert!(!folder.join("-").exists());
 }
 
+/// The rows of comma-separated values, none of which has a comma in it.
 fn rows(csv: &str) -> Vec<Vec<&str>> {
     csv.lines().map(|line| line.split(',').collect()).collect()
 }

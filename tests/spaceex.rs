@@ -426,6 +426,21 @@ fn strict_bounds_of_inputs_are_not_reached() {
     }
 }
 
+/// `initially` may bound inputs more narrowly than invariants do.
+#[test]
+fn bounds_of_inputs_hold_where_runs_begin() {
+    let model = r#"<sspaceex><component id="s"><param name="x" type="real"/>
+        <param name="u" type="real"/><location id="1" name="A"><invariant>0&lt;=u &amp; u&lt;=4</invariant>
+        <flow>x'==u</flow></location></component></sspaceex>"#;
+    let verdict = |initially: &str| {
+        let question = "forbidden = \"x >= 7.5\"\ntime-horizon = 2";
+        verdict(&problem([model, &format!("initially = \"x == 0{initially}\"\n{question}")]))
+    };
+    assert_eq!(verdict(""), Verdict::Violated);
+    // An input that varies may grow later: that is enclosed, and no run that is tried.
+    assert_eq!(verdict(" & u <= 3"), Verdict::Undecided);
+}
+
 /// A location without transitions, beside others that have some: runs may begin in either.
 #[test]
 fn runs_may_begin_where_no_transition_leads() {

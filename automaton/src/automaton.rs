@@ -288,13 +288,12 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     ///
     /// [`ParameterError`] if it has no parameter of that name, or `value` is not finite.
     pub fn with(&self, parameter: &str, value: f64) -> Result<Self, ParameterError> {
-        let parameter = || parameter.to_owned();
-        let Some(place) = self.parameters.iter().position(|(name, _)| *name == parameter()) else {
+        let Some(place) = self.parameters.iter().position(|(name, _)| name == parameter) else {
             let known = self.parameters.iter().map(|(name, _)| name.clone()).collect();
-            return Err(ParameterError::Unknown { parameter: parameter(), known });
+            return Err(ParameterError::Unknown { parameter: parameter.to_owned(), known });
         };
         if !value.is_finite() {
-            return Err(ParameterError::NotFinite { parameter: parameter(), value });
+            return Err(ParameterError::NotFinite { parameter: parameter.to_owned(), value });
         }
         let mut changed = self.clone();
         changed.parameters[place].1 = value;
@@ -346,6 +345,7 @@ pub enum ParameterError {
     },
 }
 
+/// Which names there are, as the end of a sentence.
 fn listed(known: &[String]) -> String {
     let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
     match &*names {

@@ -80,9 +80,13 @@ pub fn check(path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let is_new = !path.exists();
+    // A pipe that is opened and closed has ended for its reader.
+    if !is_new && !path.is_file() && !path.is_dir() {
+        return Ok(());
+    }
     let file = File::options().append(true).create(true).open(path);
-    let tried = file.and_then(|_| if is_new { fs::remove_file(path) } else { Ok(()) });
-    tried.map_err(|source| Failure::Creation { path: path.to_owned(), source })
+    let leave = || if is_new { fs::canonicalize(path).and_then(fs::remove_file) } else { Ok(()) };
+    file.and_then(|_| leave()).map_err(|source| Failure::Creation { path: path.to_owned(), source })
 }
 
 fn standard() -> Named<io::StdoutLock<'static>> {

@@ -43,7 +43,7 @@ pub(super) fn rectangle(corner: Spot, size: Spot, colour: &str) -> Rectangle {
     drawing::rectangle(corner, size).set("fill", colour)
 }
 
-/// How much wider bold type is than the other, in typefaces with wide bold letters.
+/// How much wider bold type is than regular type, in typefaces with wide bold letters.
 const BOLD: f64 = 1.15;
 /// Above the drawings of figures with a heading, for title and subtitle.
 const HEAD: f64 = 62.0;

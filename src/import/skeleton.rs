@@ -322,11 +322,13 @@ fn rounded_to(place: [f64; 2], extent: f64) -> [f64; 2] {
     place.map(|value| format!("{value:.decimals$}").parse().unwrap_or(value))
 }
 
-/// A rate to four decimals, or to two digits where these are less; rounded down, so that the sum stays what it was.
+/// A rate to four decimals, or to two digits where four decimals hold fewer; rounded down, so that the sum of all is at
+/// most [`RATES`].
 fn rounded_rate(rate: f64) -> f64 {
     let decimals = (1.0 - rate.log10().floor()).max(4.0);
     let scale = 10f64.powf(decimals);
-    (rate * scale).floor() / scale
+    // What is a whole number but for rounding stays one.
+    (rate * scale + 1e-6).floor() / scale
 }
 
 /// A number without the rounding of its last digits.
@@ -395,7 +397,7 @@ mod tests {
     #[test]
     fn rates_of_many_robots_are_above_zero() {
         let rates =
-            [1, 7, 8, 600, 6001, 65_535].map(|robots| rounded_rate(RATES / f64::from(robots)));
-        assert_eq!(rates, [0.6, 0.0857, 0.075, 0.001, 0.000_099, 0.000_009_1]);
+            [1, 3, 7, 8, 600, 6001, 65_535].map(|robots| rounded_rate(RATES / f64::from(robots)));
+        assert_eq!(rates, [0.6, 0.2, 0.0857, 0.075, 0.001, 0.000_099, 0.000_009_1]);
     }
 }

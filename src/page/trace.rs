@@ -40,7 +40,8 @@ pub enum PageError {
 
 /// Makes the page of a trace. A trace that breaks off, as a run leaves it that was killed, is shown
 /// up to there, and the page says that no end is recorded. What the judge finds wrong with a trace is
-/// the headline of its page, whatever outcome the trace claims.
+/// the headline of its page, whatever outcome the trace claims, unless it says itself that the run was
+/// stopped for a violation.
 ///
 /// # Errors
 /// When the text is no trace, a step is none of these robots, or the scenario in its header cannot be run.

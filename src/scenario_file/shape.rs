@@ -136,7 +136,7 @@ impl Comparison {
                 }) => {}
             (DeValue::Float(_) | DeValue::Integer(_), Shape::Number) => {
                 let message = format!(
-                    "{} is too large: write one up to {:e}, those from {:e} on with a point or an exponent",
+                    "{} is too large: numbers go up to {:e}; write whole numbers from {:e} on with a point or an exponent",
                     spoken(value.get_ref()),
                     f64::MAX,
                     i64::MAX as f64

@@ -51,8 +51,8 @@ impl Side {
 /// How many alternatives a condition may have.
 const MOST_ALTERNATIVES: usize = 4096;
 
-/// How deep parentheses may stand in each other: as deep as in a formula. What is done for each level then takes a time
-/// that grows with the length of a condition, and not with its square.
+/// How deep parentheses may stand in each other: as deep as in a formula. The text of each level is read again, so that
+/// the limit keeps the time proportional to the length of a condition.
 const MOST_NESTED: usize = 100;
 
 /// A condition as alternatives of clauses that hold together.

@@ -64,9 +64,8 @@ pub struct Initial {
     pub locations: Vec<String>,
     /// The states, over the coordinates and the parameters that do not vary.
     pub states: StateSet,
-    /// The comparisons that hold of them and are strict or not affine: of the former the states hold the boundary,
-    /// too, of the latter what is beyond. Strict bounds on inputs are among them: runs that are tried have one value of
-    /// an input throughout.
+    /// What holds where runs begin and the states cannot express: strict comparisons, whose boundary they include;
+    /// comparisons that are not affine; and bounds on inputs, each of which has one value in a run that is tried.
     pub condition: Predicate,
 }
 

@@ -214,7 +214,7 @@ impl Ring {
     ) -> Ring {
         let mut ring =
             Ring { polygon, vertices: (0..points.len()).collect(), points: points.to_vec() };
-        // How many vertices have been looked at since the last one was left out: at the end, all that are left.
+        // How many vertices in a row need no repair: all of them at the end.
         let (mut at, mut settled) = (0, 0);
         while settled < ring.points.len() && ring.points.len() >= 2 {
             let count = ring.points.len();
@@ -316,8 +316,8 @@ fn joined(rings: &[Ring], repairs: &mut Vec<Repair>) -> Result<Workspace, Worksp
     Ok(workspace.with_walls(bridges.into_iter()))
 }
 
-/// The lines that join two parts of a hole, with the workspace on both sides: each is drawn in both directions. As an
-/// area it is nothing, as a line it is a wall. The boundary follows such a line to reach the outline of a hole: there
+/// The lines that join two parts of a hole, with the workspace on both sides: each is drawn in both directions. It has no
+/// area, but is a wall. The boundary follows such a line to reach the outline of a hole: there
 /// it is none.
 fn bridges(workspace: &Workspace, rings: &[Ring], repairs: &mut Vec<Repair>) -> Vec<Segment> {
     let mut walls: Vec<Segment> = Vec::new();

@@ -335,18 +335,20 @@ fn narrow_passages(space: &FreeSpace, discs: &[Disc]) -> Vec<Point> {
 /// Where the line through the middle of the gap between two discs, square to that between their centres, meets the
 /// circles of their polygons. Of discs of the same size these circles meet there; of others they meet nearer to the
 /// smaller disc, and the line there may lead through it.
-fn ends_of_gap(one: &Disc, other: &Disc) -> impl Iterator<Item = Point> + use<> {
+fn ends_of_gap(one: &Disc, other: &Disc) -> Vec<Point> {
     let (center, apart) = (one.center, other.center - one.center);
     let distance = apart.norm();
+    if distance == 0.0 || one.radius == other.radius {
+        return Vec::new();
+    }
     let along = (distance + one.radius - other.radius) / 2.0;
     let aside = |radius: f64, along: f64| (radius * radius - along * along).sqrt();
     let reaches = [aside(outer_radius(one), along), aside(outer_radius(other), distance - along)];
     let (ahead, left) = (apart / distance, Vector::new(-apart.y, apart.x) / distance);
-    let places = reaches.into_iter().flat_map(|reach| [reach, -reach]);
-    // Where a circle does not reach the line, these are not numbers.
-    let places = places.filter(|aside| aside.is_finite());
-    let is_needed = one.radius != other.radius;
-    places.filter(move |_| is_needed).map(move |aside| center + ahead * along + left * aside)
+    // A circle that does not reach the line has a root of a negative number here.
+    let reaches = reaches.into_iter().filter(|reach| reach.is_finite());
+    let asides = reaches.flat_map(|reach| [reach, -reach]);
+    asides.map(|aside| center + ahead * along + left * aside).collect()
 }
 
 /// The distance of the corners of the polygon about a disc from its centre.

@@ -160,8 +160,13 @@ fn are_opposite(one: f64, other: f64) -> bool {
     one > 0.0 && other < 0.0 || one < 0.0 && other > 0.0
 }
 
+/// As [`are_opposite`].
+pub(super) fn are_alike(one: f64, other: f64) -> bool {
+    one > 0.0 && other > 0.0 || one < 0.0 && other < 0.0
+}
+
 fn opposite_or_on(one: f64, other: f64) -> bool {
-    !(one > 0.0 && other > 0.0 || one < 0.0 && other < 0.0)
+    !are_alike(one, other)
 }
 
 /// On which side of the line from `from` to `to` the `point` lies: positive on the left, negative

@@ -6,7 +6,7 @@
 use std::sync::OnceLock;
 
 use super::edge_tree::{Bounds, EdgeTree};
-use super::segment::side;
+use super::segment::{are_alike, side};
 use super::triangulation::{Seen, Sight, Triangulation};
 use super::{Neighbours, Segment};
 use crate::{Point, Vector};
@@ -154,7 +154,7 @@ impl Corner {
         let reach = before.norm().max(after.norm());
         let into = self.at + (before.normalize() + after.normalize()) * reach;
         let turn = side(from, self.at, to);
-        turn * side(from, self.at, into) > 0.0 && turn * side(self.at, to, into) > 0.0
+        are_alike(turn, side(from, self.at, into)) && are_alike(turn, side(self.at, to, into))
     }
 
     /// Whether the line of `path`, which ends at this corner, leaves the obstacle here on one

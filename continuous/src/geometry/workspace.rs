@@ -14,7 +14,7 @@ use crate::Point;
 /// Largest magnitude of a coordinate: beyond it the square of a length leaves the range of numbers.
 pub(super) const COORDINATE_LIMIT: f64 = 1e100;
 
-/// What is nearer to ∂W than this fraction of the extent lies on it, up to rounding.
+/// What is nearer to ∂W than this fraction of the extent, and than coordinates are rounded, lies on it.
 const NEGLIGIBLE_CLEARANCE: f64 = 1e-13;
 
 /// The bounded region W in which the robots live: a simple polygon without the interiors of its
@@ -323,9 +323,10 @@ impl Workspace {
         self.tree.for_each_overlapping(path, |_, edge| shares.extend(edge.shares_on(path)));
         shares.sort_by(f64::total_cmp);
         // Between two places where the segment meets ∂W, all of it lies in W, outside, or on ∂W.
-        let middles = shares.windows(2).map(|part| path.at((part[0] + part[1]) / 2.0));
-        let least = NEGLIGIBLE_CLEARANCE * self.extent;
-        middles.into_iter().any(|middle| self.clearance(middle) > least)
+        let mut middles = shares.windows(2).map(|part| path.at((part[0] + part[1]) / 2.0));
+        let magnitude = path.from.coords.amax().max(path.to.coords.amax());
+        let least = NEGLIGIBLE_CLEARANCE * self.extent + 16.0 * f64::EPSILON * magnitude;
+        middles.any(|middle| self.clearance(middle) > least)
     }
 
     /// Whether a segment meets ∂W or comes closer to it than `distance`.

@@ -1,8 +1,8 @@
 //! Maps whose polygons touch.
 
-use pleach_continuous::Point;
 use pleach_continuous::geometry::workspace::Polygon;
 use pleach_continuous::geometry::{FreeSpace, Repair, Workspace, WorkspaceError};
+use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
 
 use super::environments::{environment, place, ring};
@@ -272,6 +272,24 @@ fn what_is_wrong_besides_contact_is_told_of_the_map_as_it_was_given() {
     twice[4].y = f64::INFINITY;
     let refused = Workspace::repaired(twice, vec![]);
     assert!(matches!(refused, Err(WorkspaceError::NotFinite { vertex: 4, .. })), "{refused:?}");
+}
+
+/// Far from the origin a middle of an edge is rounded away from it, by more than the extent makes negligible.
+#[test]
+fn edges_of_holes_are_no_walls_far_from_the_origin() {
+    let origin = Vector::new(5e6, 4e6);
+    let placed = |places: &[(f64, f64)]| -> Vec<Point> {
+        ring(places).into_iter().map(|place| place + origin).collect()
+    };
+    let outline = placed(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)]);
+    for turn in 0..50 {
+        let lean = 0.02 * f64::from(turn);
+        let hole = placed(&[(2.0, 2.0), (4.1, 2.3 + lean), (3.9, 4.7), (2.2 - lean, 3.1)]);
+        let touching = placed(&[(4.1, 2.3 + lean), (6.3, 1.9), (6.1 + lean, 3.7)]);
+        let (_, repairs) = Workspace::repaired(outline.clone(), vec![hole, touching]).unwrap();
+        let is_wall = |repair: &Repair| matches!(repair, Repair::Wall { .. });
+        assert!(!repairs.iter().any(is_wall), "{lean}: {repairs:?}");
+    }
 }
 
 proptest! {

@@ -39,7 +39,7 @@ enum Error {
     Io(#[from] io::Error),
     #[error("there is no fault “{0}” in proofs/faults.toml")]
     Unknown(String),
-    #[error("`cargo {0}` fails although nothing is planted")]
+    #[error("`cargo {0}` fails although no fault is in effect")]
     FailsAnyway(String),
     #[error("{file}: {source}")]
     Syntax { file: String, source: syn::Error },

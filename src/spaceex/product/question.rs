@@ -108,10 +108,12 @@ impl Product<'_> {
             let values = self.constants.iter().filter(|(_, values)| values.width() == 0.0);
             let values = values.map(|(name, values)| (name, constant(values.midpoint())));
             let values = Substitution::new(values);
-            let mut strict = states_of(&mut clauses.iter())?;
-            strict.retain(is_strict);
-            strict.extend(open_inputs.iter().cloned());
-            strict.iter_mut().for_each(|one| *one = one.substitute(&values));
+            let mut conditions = states_of(&mut clauses.iter())?;
+            conditions.retain(is_strict);
+            conditions.extend(open_inputs.iter().cloned());
+            let of_inputs = states_of(&mut clauses.iter().filter(|it| self.is_input_bound(it)))?;
+            conditions.extend(of_inputs.into_iter().filter(|one| !is_strict(one)));
+            conditions.iter_mut().for_each(|one| *one = one.substitute(&values));
             // All but the sides of the box cut it.
             let cuts = states_of(&mut clauses.iter().filter(|clause| bound(clause).is_none()))?;
             let cut = Predicate::all(cuts).substitute(&values);
@@ -127,8 +129,8 @@ impl Product<'_> {
                 let Some(states) = states else { continue };
                 // Nor do sets of states end where comparisons end that are not affine.
                 let others = conjunction.others.iter().cloned().map(Predicate::Comparison);
-                let others = others.filter(|other| !strict.contains(other));
-                let condition = Predicate::all(strict.iter().cloned().chain(others));
+                let others = others.filter(|other| !conditions.contains(other));
+                let condition = Predicate::all(conditions.iter().cloned().chain(others));
                 initial.push(Initial { locations: locations.clone(), states, condition });
             }
         }

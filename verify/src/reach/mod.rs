@@ -12,7 +12,7 @@
 //! formulas over time of all runs. [`confirm()`] says whether what checks have found comes up. `docs/reachability.md`
 //! says what is guaranteed, and where not.
 //!
-//! Some names are those of other modules, such as [`Settings`], [`Jump`] and [`Mode`]: import the module,
+//! Some names, such as [`Settings`], [`Jump`] and [`Mode`], occur in other modules too: import the module,
 //! `use pleach::verify::reach;`, rather than all of its names.
 
 pub mod affine;

@@ -48,8 +48,8 @@ pub struct Run {
 pub struct Starts<'a> {
     /// In these sets.
     pub sets: &'a [StateSet],
-    /// And only where this holds of the coordinates and of all parameters, as strict comparisons of which the sets and
-    /// the values of inputs hold the boundaries.
+    /// And only where this holds of the coordinates and parameters. It excludes states that the sets include, such as
+    /// the boundary of a strict comparison.
     pub condition: Option<&'a Predicate>,
 }
 

@@ -18,7 +18,7 @@ use crate::zeno::{Zeno, ZenoDetector};
 /// guards stay far below it; those that are only signs are not believed.
 const LARGEST_ALLOWANCE: f64 = 1e-9;
 /// By how much two shares of one mixture of flows may differ, as they are rounded.
-const SAME: f64 = 1e-6;
+const SHARE_TOLERANCE: f64 = 1e-6;
 
 impl<'a> Simulation<'a> {
     /// Plans the flow of a group from here on, unless that is done.
@@ -185,10 +185,12 @@ impl<'a> Simulation<'a> {
             let met = sides.filter(|(here, beyond)| *here > 0.0 && *beyond < 0.0);
             met.map(|(here, beyond)| here / (here - beyond)).collect()
         };
-        // Where the jump back crosses another boundary, the mixture that stays on the one leaves the other.
+        // Where the jump back crosses another boundary, the mixture that stays on the one leaves the other. Where it
+        // crosses none to which both flows lead, only the first counts.
         let returning = shares(&back);
         let is_one = |share: &f64| {
-            returning.is_empty() || returning.iter().any(|back| (share + back - 1.0).abs() < SAME)
+            returning.is_empty()
+                || returning.iter().any(|back| (share + back - 1.0).abs() < SHARE_TOLERANCE)
         };
         let share = shares(&there).into_iter().find(is_one)?;
         Some(Sliding { component: there.component, locations: [there.source, there.target], share })
