@@ -194,3 +194,8 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Plan, ImportError> {
     };
     Ok(plan.map_err(malformed)?.near_the_origin())
 }
+
+/// A finite number: infinite ones and those that are none can be written, too.
+fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}

@@ -119,7 +119,7 @@ enum Topic {
 
 /// A recording under way.
 struct Recording<W: Write> {
-    /// Outputs may be pipes: chunks are put together in memory.
+    /// The output may be a pipe, which cannot seek, so chunks are buffered in memory.
     writer: Writer<NoSeek<W>>,
     channels: [u16; 4],
     messages: u64,

@@ -6,7 +6,7 @@ mod error;
 use std::ops::RangeInclusive;
 
 use petgraph::graph::{DiGraph, NodeIndex};
-use pleach_discrete::{Event, Location, Row, TransitionTable};
+use pleach_discrete::{Event, Location, Row, TransitionTable, first_mentions};
 use pleach_guards::{Guard, Predicate, Valuation};
 
 pub use error::BuildError;
@@ -297,15 +297,4 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
         self.ranges.push((coordinate.name().to_owned(), range));
         self
     }
-}
-
-/// Those that are new, in the order in which they occur first.
-fn first_mentions<T: PartialEq>(mentioned: impl Iterator<Item = T>) -> Vec<T> {
-    let mut new = Vec::new();
-    for one in mentioned {
-        if !new.contains(&one) {
-            new.push(one);
-        }
-    }
-    new
 }

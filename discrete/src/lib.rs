@@ -33,5 +33,5 @@ pub mod urgency;
 pub mod vocabulary;
 
 pub use location::{Event, Location};
-pub use table::{InvalidTransition, Row, TransitionTable};
+pub use table::{InvalidTransition, Row, TransitionTable, first_mentions};
 pub use urgency::Urgency;

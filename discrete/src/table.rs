@@ -158,8 +158,8 @@ impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
     }
 }
 
-/// Those that are new, in the order in which they occur first.
-fn first_mentions<T: PartialEq>(mentioned: impl Iterator<Item = T>) -> Vec<T> {
+/// Each value once, in the order in which they occur first.
+pub fn first_mentions<T: PartialEq>(mentioned: impl Iterator<Item = T>) -> Vec<T> {
     let mut new = Vec::new();
     for one in mentioned {
         if !new.contains(&one) {

@@ -5,8 +5,8 @@
 //! cell (`negate` turns this round). Above `occupied_thresh` the cell is occupied, or else below
 //! `free_thresh` free, or else unknown. Only free cells are floor.
 
-use super::ImportError;
 use super::grid::Grid;
+use super::{ImportError, finite};
 use image::{DynamicImage, GenericImageView, ImageReader, Rgba};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -114,9 +114,7 @@ impl Keys {
 
     fn number(&self, key: &str, default: Option<f64>) -> Result<f64, String> {
         match (self.text(key), default) {
-            (Ok(text), _) => (text.parse().ok())
-                .filter(|number: &f64| number.is_finite())
-                .ok_or_else(|| format!("{key}: {text:?} is not a number")),
+            (Ok(text), _) => finite(text).ok_or_else(|| format!("{key}: {text:?} is not a number")),
             (Err(_), Some(default)) => Ok(default),
             (Err(missing), None) => Err(missing),
         }
@@ -136,9 +134,7 @@ impl Keys {
     /// Where the lower left corner lies, and by how much the map is turned; 0 by default.
     fn origin(&self) -> Result<[f64; 3], String> {
         let Ok(text) = self.text("origin") else { return Ok([0.0; 3]) };
-        let number =
-            |part: &str| part.trim().parse().ok().filter(|number: &f64| number.is_finite());
-        let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+        let numbers: Option<Vec<f64>> = text.split(',').map(|part| finite(part.trim())).collect();
         (numbers.and_then(|numbers| numbers.try_into().ok()))
             .ok_or_else(|| format!("origin: {text:?} is no list of three numbers [x, y, yaw]"))
     }

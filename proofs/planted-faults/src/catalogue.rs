@@ -1,6 +1,6 @@
 //! The faults of `proofs/faults.toml`, and where they are planted.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::{fmt, fs, io};
 
@@ -123,8 +123,24 @@ pub fn read(root: &Path, path: &str) -> Result<String, CatalogueError> {
         .map_err(|source| CatalogueError::File { path: path.to_owned(), source })
 }
 
-/// The roots of the crates that have these files.
-pub fn crate_roots<'a>(files: impl Iterator<Item = &'a str>) -> BTreeSet<String> {
-    let package = |file: &str| file.split_once("src/").map(|(package, _)| package.to_owned());
-    files.filter_map(package).map(|package| format!("{package}src/lib.rs")).collect()
+/// Adds a function to the roots of the crates that have these sources.
+///
+/// # Errors
+/// When a root cannot be read.
+pub fn add_to_roots(
+    root: &Path,
+    sources: &mut BTreeMap<String, String>,
+    function: &str,
+) -> Result<(), CatalogueError> {
+    let package = |file: &String| file.split_once("src/").map(|(package, _)| package.to_owned());
+    let packages: BTreeSet<String> = sources.keys().filter_map(package).collect();
+    for package in packages {
+        let crate_root = format!("{package}src/lib.rs");
+        let source = match sources.remove(&crate_root) {
+            Some(source) => source,
+            None => read(root, &crate_root)?,
+        };
+        sources.insert(crate_root, source + function);
+    }
+    Ok(())
 }

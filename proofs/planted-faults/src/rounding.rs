@@ -9,7 +9,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::catalogue::{CatalogueError, crate_roots, read};
+use super::catalogue::{CatalogueError, add_to_roots, read};
 
 /// The variable of the environment with the number of the place at which rounding is left out.
 pub const CHOICE: &str = "PLEACH_UNROUNDED";
@@ -82,10 +82,7 @@ pub fn with_choices(
         }
         sources.insert(file.to_owned(), changed + &source[end..]);
     }
-    for crate_root in crate_roots(places.iter().map(|place| &*place.file)) {
-        let source = read(root, &crate_root)? + &decision();
-        sources.insert(crate_root, source);
-    }
+    add_to_roots(root, &mut sources, &decision())?;
     Ok(sources)
 }
 

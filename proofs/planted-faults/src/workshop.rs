@@ -8,7 +8,7 @@ use std::{env, fs, io};
 use serde::Deserialize;
 
 use crate::Error;
-use crate::catalogue::{Engine, Fault, crate_roots, read};
+use crate::catalogue::{Engine, Fault, add_to_roots, read};
 use crate::rounding::{self, Rounding, with_choices};
 use crate::verdict::Verdict;
 use crate::weaving::{self, Numbered, Woven, decision};
@@ -48,7 +48,10 @@ impl<'a> Workshop<'a> {
         let mut left_out = BTreeSet::new();
         loop {
             let files = self.woven(faults, &left_out)?;
-            self.plant(&self.with_decision(&files)?)?;
+            let texts = files.iter().map(|(file, woven)| (file.clone(), woven.text.clone()));
+            let mut sources = texts.collect();
+            add_to_roots(self.root, &mut sources, &decision())?;
+            self.plant(&sources)?;
             let woven: BTreeSet<usize> = files.values().flat_map(Woven::faults).collect();
             left_out
                 .extend(faults.iter().map(|(number, _)| *number).filter(|it| !woven.contains(it)));
@@ -83,23 +86,6 @@ impl<'a> Workshop<'a> {
             Ok((file.to_owned(), woven))
         });
         woven.collect()
-    }
-
-    /// The text of these files, and of the roots of their crates with the function that chooses a fault.
-    fn with_decision(
-        &self,
-        files: &BTreeMap<String, Woven>,
-    ) -> Result<BTreeMap<String, String>, Error> {
-        let texts = files.iter().map(|(file, woven)| (file.clone(), woven.text.clone()));
-        let mut sources: BTreeMap<String, String> = texts.collect();
-        for crate_root in crate_roots(files.keys().map(|file| &**file)) {
-            let source = match sources.remove(&crate_root) {
-                Some(woven) => woven,
-                None => read(self.root, &crate_root)?,
-            };
-            sources.insert(crate_root, source + &decision());
-        }
-        Ok(sources)
     }
 
     /// What the compiler objects to in the libraries of the copy.

@@ -1,5 +1,6 @@
 //! The elements of a drawing, in the order of the file.
 
+use crate::import::finite;
 use kurbo::{Affine, Point};
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
@@ -143,9 +144,4 @@ impl Element {
         }
         element
     }
-}
-
-/// A finite number: infinite ones and those that are none can be written, too.
-pub(super) fn finite(text: &str) -> Option<f64> {
-    text.parse().ok().filter(|number: &f64| number.is_finite())
 }

@@ -1,6 +1,7 @@
 //! Shapes and their outlines.
 
-use super::elements::{Element, finite};
+use super::elements::Element;
+use crate::import::finite;
 use kurbo::{Affine, BezPath, Circle, Ellipse, Line, Rect, RoundedRect, Shape};
 
 /// Circles become curves; those are as exact as can be before chords replace them.

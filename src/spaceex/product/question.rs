@@ -2,6 +2,7 @@
 
 use super::clause::{bound, fixed, predicate};
 use super::{Product, Result, location_name};
+use crate::discrete::first_mentions;
 use crate::guards::{Expression, Predicate, Relation, Substitution, constant};
 use crate::spaceex::configuration::{Bounded, Options};
 use crate::spaceex::formula::{Clause, Side};
@@ -152,15 +153,8 @@ impl Product<'_> {
                 }
             }
         }
-        bounds.retain(is_strict);
         // Components and locations say the same of an input.
-        let mut known: Vec<Predicate> = Vec::new();
-        for bound in bounds {
-            if !known.contains(&bound) {
-                known.push(bound);
-            }
-        }
-        Ok(known)
+        Ok(first_mentions(bounds.into_iter().filter(is_strict)))
     }
 
     /// Fails if a predicate reads what is no number of the system.

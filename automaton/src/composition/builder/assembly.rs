@@ -61,20 +61,12 @@ impl CompositionBuilder {
         if self.parts.is_empty() {
             return Err(CompositionError::Empty);
         }
-        let mut names: Vec<&String> = self.parts.iter().map(|part| &part.name).collect();
-        names.sort_unstable();
-        match names.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(CompositionError::NameTwice { name: pair[0].clone() }),
-            None => self.check_full_names(),
+        if let Some(name) = repeated(self.parts.iter().map(|part| part.name.clone()).collect()) {
+            return Err(CompositionError::NameTwice { name });
         }
-    }
-
-    /// `q.x` of a component `p` is called like `x` of a component `p.q`.
-    fn check_full_names(&self) -> Result<(), CompositionError> {
-        let mut names = self.full_names();
-        names.sort_unstable();
-        match names.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(CompositionError::VariableTwice { variable: pair[0].clone() }),
+        // `q.x` of a component `p` is called like `x` of a component `p.q`.
+        match repeated(self.full_names()) {
+            Some(variable) => Err(CompositionError::VariableTwice { variable }),
             None => Ok(()),
         }
     }
@@ -244,4 +236,10 @@ impl Component {
         }
         Ok(())
     }
+}
+
+/// A name that occurs twice, the first in their order.
+fn repeated(mut names: Vec<String>) -> Option<String> {
+    names.sort_unstable();
+    names.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0].clone())
 }
