@@ -176,22 +176,12 @@ impl<M> Steps<'_, M> {
     ) -> Result<(), N::Error> {
         let Outcome { outputs, answers, .. } = outcome;
         for (id, (node, slot)) in (first..).zip(nodes.iter_mut().zip(slots)) {
-            let heard = self.mail.map(|(mail, number)| (mail.of(id), number));
-            if let Some((mail, number)) = heard.filter(|(mail, _)| mail.len() > 0) {
-                slot.hear(number, mail.len());
-                for (place, Delivery { from, message, .. }) in mail {
-                    let before = outputs.counts();
-                    let result =
-                        slot.step(node, Input::Heard { from, message }, outputs.now_of(id));
-                    if outputs.counts() != before {
-                        answers.push((place, outputs.split_off(before)));
-                    }
-                    result?;
-                }
-                slot.ask(node);
+            let outputs = outputs.now_of(id);
+            if let Some((mail, number)) = self.mail {
+                slot.hear_all(node, mail.of(id), number, outputs, answers)?;
             }
             if let Some(round) = self.tick_of(slot) {
-                slot.tick(node, round, outputs.now_of(id))?;
+                slot.tick(node, round, outputs)?;
             }
         }
         Ok(())
@@ -216,6 +206,34 @@ impl Slot {
         let result = node.step(input, outputs);
         self.traffic.sent += (outputs.sent().len() - before) as u64;
         result
+    }
+
+    /// The node hears the messages of a delivery, one after another. What it says on hearing one is kept with the place
+    /// of that one.
+    fn hear_all<'m, N: Node<Message: 'm>>(
+        &mut self,
+        node: &mut N,
+        mail: impl ExactSizeIterator<Item = (u32, Delivery<'m, N::Message>)>,
+        delivery: usize,
+        outputs: &mut Said<N>,
+        answers: &mut Vec<(u32, Said<N>)>,
+    ) -> Result<(), N::Error> {
+        if mail.len() == 0 {
+            return Ok(());
+        }
+        self.hear(delivery, mail.len());
+        for (place, Delivery { from, message, .. }) in mail {
+            let before = outputs.counts();
+            let result = node.step(Input::Heard { from, message }, outputs);
+            if outputs.counts() != before {
+                let answer = outputs.split_off(before);
+                self.traffic.sent += answer.sent().len() as u64;
+                answers.push((place, answer));
+            }
+            result?;
+        }
+        self.ask(node);
+        Ok(())
     }
 
     /// The node hears this many messages in a delivery.

@@ -36,6 +36,8 @@ vocabulary! {
         Refuses = "refuses",
         /// The mover has heard the refusal.
         RefusalHeard = "refusal heard",
+        /// The mover is gone, and cannot hear the refusal.
+        RefusalInVain = "refusal in vain",
         /// The mover has taken the duty given: it takes the one offered.
         DutyGiven = "duty given",
         /// It has begun while others were under way, and may have forgotten offers that it has made.
@@ -72,7 +74,9 @@ pub const EXCHANGE: TransitionTable<ExchangeStage, ExchangeEvent> = {
         row(0, OfferingAndRefusing, On::DutyTaken, Refusing),
         row(0, OfferingAndRefusing, On::OfferRefused, Refusing),
         row(1, OfferingAndRefusing, On::RefusalHeard, Offering),
+        row(1, OfferingAndRefusing, On::RefusalInVain, Offering),
         row(1, Refusing, On::RefusalHeard, Free),
+        row(1, Refusing, On::RefusalInVain, Free),
         row(1, Giving, On::DutyGiven, Free),
         row(4, Offering, On::PartnerLost, Free),
         row(4, OfferingAndRefusing, On::PartnerLost, Free),

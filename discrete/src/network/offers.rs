@@ -157,6 +157,11 @@ impl<D: Copy> Offers<D> {
         reply.accepted
     }
 
+    /// The parked robot no longer repeats its reply if that is a refusal.
+    pub fn withdraw_refusal(&mut self) {
+        self.reply.take_if(|reply| reply.accepted.is_none());
+    }
+
     /// The parked robot hears of the mover, which has this offer and has made this number of offers: the duty
     /// that it has now, if it has given its own and the mover has taken that.
     pub fn conclude(&mut self, offer: Option<&Offer<D>>, offers_made: u32) -> Option<D> {

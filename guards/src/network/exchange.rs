@@ -42,6 +42,11 @@ pub fn refusal_heard() -> Guard {
     Guard::new("refusal heard", proposition("reply_heard"))
 }
 
+/// The mover that this robot has refused is gone.
+pub fn refusal_in_vain() -> Guard {
+    Guard::new("refusal in vain", proposition("refused_gone").and(!proposition("reply_heard")))
+}
+
 /// The mover has given up the offer that this robot has accepted: it has taken the duty.
 pub fn duty_given() -> Guard {
     Guard::new("duty given", proposition("reply_heard"))

@@ -304,6 +304,7 @@ impl Robot {
             upstream: _,
             expected_link: _,
             dual_step_size: _,
+            told_report: _,
             told_outflow: _,
             inflow: _,
             inflows: _,
@@ -318,6 +319,7 @@ impl Robot {
             has_shortage_news: _,
             routes_fall_short: _,
             has_untold_flows: _,
+            has_new_multipliers: _,
             is_unsettled: _,
             destination: _,
             target: _, // by the announcement

@@ -12,6 +12,7 @@ use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
 use super::Robot;
+use super::partner::Answered;
 use crate::network::duty::Duty;
 use crate::network::record::MissionEvent;
 
@@ -75,6 +76,8 @@ modes! {
 pub enum ExchangeEffect {
     /// It has answered the offer with this number of this mover.
     Answered(NodeId, u32),
+    /// It no longer repeats the refusal of this mover's offer, which that robot has not heard.
+    RefusedInVain(NodeId),
     /// It no longer looks for a partner.
     PartnerAsked,
     /// It takes this duty over from this robot.
@@ -98,7 +101,10 @@ impl Holds<Exchange> for Robot {
         for effect in effects {
             match effect {
                 ExchangeEffect::Answered(mover, number) => {
-                    self.answered.insert(mover, number);
+                    self.answered.insert(mover, Answered { number, in_vain: false });
+                }
+                ExchangeEffect::RefusedInVain(mover) => {
+                    self.answered.entry(mover).and_modify(|answered| answered.in_vain = true);
                 }
                 ExchangeEffect::PartnerAsked => self.partner = None,
                 ExchangeEffect::Takes(duty, partner) => {
@@ -210,6 +216,17 @@ fn conclude<A: HasOffers, B: From<Offers<Duty>>>(
     Some(B::from(offers))
 }
 
+fn withdraw_refusal<A: HasOffers, B: From<Offers<Duty>>>(
+    exchange: &A,
+    _: &Robot,
+    effects: &mut Effects,
+) -> Option<B> {
+    let mut offers = exchange.offers().clone();
+    effects.push(ExchangeEffect::RefusedInVain(offers.reply()?.to));
+    offers.withdraw_refusal();
+    Some(B::from(offers))
+}
+
 fn lose_partner<A>(_: &A, robot: &Robot, _: &mut Effects) -> Free {
     Free(Offers::numbered_after(robot.offers().offers_made()))
 }
@@ -252,6 +269,16 @@ where
     Transfer::where_known(ExchangeEvent::RefusalHeard, guard, name, conclude::<A, B>)
 }
 
+fn refusal_in_vain<A, B>() -> Row
+where
+    A: DataOf<Exchange> + HasOffers,
+    B: DataOf<Exchange> + From<Offers<Duty>>,
+{
+    let (guard, name) = (guards::refusal_in_vain(), "withdraw the reply");
+    let reset = withdraw_refusal::<A, B>;
+    Transfer::where_known(ExchangeEvent::RefusalInVain, guard, name, reset)
+}
+
 fn partner_lost<A: DataOf<Exchange>>() -> Row {
     let (guard, name) = (guards::partner_lost(), "begin again");
     Transfer::new(ExchangeEvent::PartnerLost, guard, name, lose_partner::<A>)
@@ -281,6 +308,8 @@ pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
         .carried_out(refused::<OfferingAndRefusing, Refusing>())
         .carried_out(refusal_heard::<OfferingAndRefusing, Offering>())
         .carried_out(refusal_heard::<Refusing, Free>())
+        .carried_out(refusal_in_vain::<OfferingAndRefusing, Offering>())
+        .carried_out(refusal_in_vain::<Refusing, Free>())
         .carried_out(Transfer::where_known(
             On::DutyGiven,
             guards::duty_given(),
@@ -298,7 +327,7 @@ mod tests {
     use std::sync::Arc;
 
     use pleach_continuous::Point;
-    use pleach_discrete::network::{Offer, Phase, Post, PostId};
+    use pleach_discrete::network::{IdSet, Offer, Phase, Post, PostId};
     use serde_json::json;
     use std::collections::BTreeSet;
 
@@ -354,6 +383,24 @@ mod tests {
         }
     }
 
+    /// It offers its duty to robot 0.
+    fn offer_duty(mover: &mut Beacon) {
+        mover.offers_made = 1;
+        mover.offer = mover.duty.map(|duty| Offer { to: 0, number: 1, duty });
+    }
+
+    fn task() -> Shared<Announcement> {
+        Shared::new(Announcement {
+            task: 0,
+            position: Point::new(3.0, 3.0),
+            before: Arc::default(),
+            roster: Arc::new([0, 1].into_iter().collect()),
+            eligible: Arc::new([0].into_iter().collect()),
+            again: false,
+            stretched: false,
+        })
+    }
+
     /// A robot may need another post in the period in which it has made one, and given it away.
     #[test]
     fn posts_of_one_period_differ() {
@@ -374,26 +421,12 @@ mod tests {
     fn a_robot_that_has_refused_an_offer_goes_on() {
         let mut robot = robot();
         let mut mover = other();
-        mover.offers_made = 1;
-        mover.offer = mover.duty.map(|duty| Offer { to: 0, number: 1, duty });
+        offer_duty(&mut mover);
         hear(&mut robot, &mover);
         assert_eq!(robot.exchange.location(), ExchangeStage::Refusing);
         assert_eq!(robot.offers().reply().map(|reply| reply.accepted), Some(None));
 
-        let all = Arc::new([0, 1].into_iter().collect());
-        let (position, eligible) = (Point::new(3.0, 3.0), Arc::new([0].into_iter().collect()));
-        let before = Arc::default();
-        let task = Announcement {
-            task: 0,
-            position,
-            before,
-            roster: all,
-            eligible,
-            again: false,
-            stretched: false,
-        };
-        let task = Notice::Task(Shared::new(task));
-        mover.bulletin = mover.bulletin.next(2, Shared::new(task));
+        mover.bulletin = mover.bulletin.next(2, Shared::new(Notice::Task(task())));
         hear(&mut robot, &mover);
         assert_eq!(
             (robot.exchange.location(), robot.phase()),
@@ -409,10 +442,8 @@ mod tests {
     /// The robot is in its seventh period, and robot 1 is gone if that is said.
     fn begins_a_period(robot: &mut Robot, is_gone: bool) {
         robot.period = 7;
-        if is_gone {
-            let gone = [1].into_iter().collect();
-            robot.roll = Roll { called: 7, absent: Arc::new(Absent { gone, ..Absent::default() }) };
-        }
+        let gone = if is_gone { [1].into_iter().collect() } else { IdSet::default() };
+        robot.roll = Roll { called: 7, absent: Arc::new(Absent { gone, ..Absent::default() }) };
         robot.round_count.restart();
         robot.begin_period().expect("guards have values");
     }
@@ -447,19 +478,45 @@ mod tests {
         assert_eq!((robot.partner, robot.taking_over), (None, Some((duty, 1))));
     }
 
-    /// The mover may come back with its offer, and is to hear the refusal.
+    /// A refusal that nobody can hear is withdrawn, so that the robot can take part in other exchanges. The mover
+    /// may come back with its offer: it is refused again although the robot could accept by now, as it may have heard
+    /// the first refusal.
     #[test]
     fn a_refusal_that_nobody_can_hear_holds_nobody_up() {
-        for is_gone in [false, true] {
+        for has_refused in [true, false] {
             let mut robot = robot();
-            let mut mover = Offers::new();
-            mover.make_offer(0, *robot.duty);
-            let mut offers = Offers::new();
-            offers.answer(1, mover.offer().expect("it has just been made"), None);
-            robot.exchange = Current::new(Exchange::Refusing(Refusing(offers)));
-            begins_a_period(&mut robot, is_gone);
-            assert_eq!(robot.is_engaged(), !is_gone);
-            assert!(robot.offers().reply().is_some());
+            let mut mover = Beacon { position: Point::new(2.02, 2.0), ..other() };
+            if has_refused {
+                offer_duty(&mut mover);
+                hear(&mut robot, &mover);
+                begins_a_period(&mut robot, false);
+                assert_eq!(robot.exchange.location(), ExchangeStage::Refusing);
+                begins_a_period(&mut robot, true);
+                assert_eq!(robot.exchange.location(), ExchangeStage::Free);
+                assert!(robot.offers().reply().is_none() && !robot.is_engaged());
+            }
+            robot.roll = Roll::default();
+            robot.bulletin = robot.bulletin.next(2, Shared::new(Notice::Task(task())));
+            robot.announced = Some((robot.notice_id(), task()));
+            offer_duty(&mut mover);
+            mover.announced = robot.announced.clone();
+            hear(&mut robot, &mover);
+            let reply = robot.offers().reply().expect("it answers");
+            assert_eq!(reply.accepted.is_none(), has_refused);
         }
+    }
+
+    /// Its own offer stands meanwhile.
+    #[test]
+    fn a_mover_that_has_refused_one_that_is_gone_still_offers_its_duty() {
+        let mut robot = robot();
+        let mut offers = Offers::new();
+        offers.make_offer(2, *robot.duty);
+        let refused = Offer { to: 0, number: 1, duty: *robot.duty };
+        offers.answer(1, &refused, None);
+        robot.exchange = Current::new(Exchange::OfferingAndRefusing(OfferingAndRefusing(offers)));
+        begins_a_period(&mut robot, true);
+        assert_eq!(robot.exchange.location(), ExchangeStage::Offering);
+        assert!(robot.offers().offer().is_some() && robot.offers().reply().is_none());
     }
 }

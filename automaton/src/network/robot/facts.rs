@@ -212,6 +212,8 @@ facts! {
             may_give: robot.may_be_relieved(),
             /// The mover has heard its reply.
             reply_heard: robot.is_reply_heard(),
+            /// The mover that it has refused is gone.
+            refused_gone: robot.refuses_gone_mover(),
             /// A control period begins, and the robot with which it exchanges duties is gone.
             partner_gone: robot.has_lost_partner(),
             /// The mission has ended, as far as it knows.

@@ -51,6 +51,7 @@ use std::sync::Arc;
 use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
+use pleach_continuous::network::routing::adal::NeighbourReport;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
     Agreement, Anchor, Bid, Confirmation, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId,
@@ -94,6 +95,7 @@ use duties::Label;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
+use partner::Answered;
 use reservation::{HeldFlow, Reservation};
 use rounds::Rounds;
 
@@ -143,6 +145,8 @@ pub struct Robot {
     /// Its routes of the period before do not carry the rates.
     routes_fall_short: bool,
     has_untold_flows: bool,
+    /// A multiplier has changed, its own or a neighbour's, since it chose its shares.
+    has_new_multipliers: bool,
     is_unsettled: bool,
     must_judge_moves: bool,
 
@@ -160,6 +164,8 @@ pub struct Robot {
     routing: routing::RoutingState,
     /// ε of (14) over its links in this period.
     dual_step_size: f64,
+    /// How its equation stands, as it has told in this period.
+    told_report: Option<NeighbourReport>,
     /// What it sends over them in all, as it has told last.
     told_outflow: f64,
     /// The parent to which it sends its demand in this period.
@@ -211,8 +217,8 @@ pub struct Robot {
     taking_over: Option<(Duty, NodeId)>,
     /// The robots with which it has exchanged duties since this notice.
     past_partners: Option<(NoticeId, Vec<NodeId>)>,
-    /// The number of the offer answered last, by the robot that made it.
-    answered: BTreeMap<NodeId, u32>,
+    /// The offer answered last, by the robot that made it.
+    answered: BTreeMap<NodeId, Answered>,
 
     // Its place in the tree.
     parent: Option<NodeId>,
@@ -367,6 +373,7 @@ impl Robot {
             links: Vec::new(),
             flows: Vec::new(),
             dual_step_size: 0.0,
+            told_report: None,
             told_outflow: 0.0,
             upstream: None,
             expected_link: 0,
@@ -383,6 +390,7 @@ impl Robot {
             has_shortage_news: false,
             routes_fall_short: false,
             has_untold_flows: false,
+            has_new_multipliers: false,
             is_unsettled: true,
             destination: None,
             waypoint: None,

@@ -8,7 +8,8 @@
 //! the two takings both hold the duty of the parked robot, and nobody that of the mover. With every exchange the way
 //! that remains gets shorter, and two members of the team exchange duties a few times at most until a newer notice is
 //! heard: exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
-//! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner that is somewhat
+//! begins again, as if it had stopped, and has neither. A refusal that a gone mover has not heard is withdrawn, and made
+//! again if that comes back with its offer. A mover that cannot pass takes a partner that is somewhat
 //! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
@@ -47,6 +48,15 @@ fn is_behind(ahead: Option<&TeamReport>, behind: Option<&TeamReport>) -> bool {
 /// As [`is_behind`], and it stands still.
 fn stands_behind(ahead: Option<&TeamReport>, behind: Option<&TeamReport>) -> bool {
     is_behind(ahead, behind) && behind.is_some_and(TeamReport::stands_still)
+}
+
+/// The last answer to the offers of a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Answered {
+    /// The number of the offer.
+    pub number: u32,
+    /// It was a refusal, and the other was gone before it heard it.
+    pub in_vain: bool,
 }
 
 impl Robot {
@@ -179,13 +189,21 @@ impl Robot {
         (reply.to == self.id && reply.number == offer.number).then_some(reply)
     }
 
-    /// The first offer to this robot that it has not answered, with the mover.
+    /// The first offer to this robot that it has not answered, or refused in vain, with the mover.
     pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Offer<Duty>)> {
         self.neighbours.iter().find_map(|neighbour| {
-            let offer = neighbour.beacon.offer.as_ref()?;
-            let answered = self.answered.get(&neighbour.id()).copied();
-            offer.asks(self.id, answered).then(|| (neighbour.id(), offer))
+            let (mover, offer) = (neighbour.id(), neighbour.beacon.offer.as_ref()?);
+            let is_asked = offer.asks(self.id, self.answered.get(&mover).map(|it| it.number))
+                || self.has_refused_in_vain(mover, offer) && !self.is_gone(mover);
+            is_asked.then_some((mover, offer))
         })
+    }
+
+    /// Whether it has refused this offer, and the mover was gone before it heard that. If it comes back, it
+    /// is refused again: it may have heard the first refusal after all.
+    fn has_refused_in_vain(&self, mover: NodeId, offer: &Offer<Duty>) -> bool {
+        let answered = self.answered.get(&mover);
+        offer.to == self.id && answered.is_some_and(|it| it.in_vain && it.number == offer.number)
     }
 
     /// Whether the mover has given its offer up, so that it has heard the reply.
@@ -208,7 +226,9 @@ impl Robot {
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
             && self.offer_to_answer().is_none_or(|(mover, offer)| {
-                self.is_beside(mover) && self.pursues_the_same(mover, offer)
+                !self.has_refused_in_vain(mover, offer)
+                    && self.is_beside(mover)
+                    && self.pursues_the_same(mover, offer)
             })
     }
 
@@ -241,16 +261,15 @@ impl Robot {
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what
-    /// it is: a duty that changed after it was offered would be taken over as it had been. A robot that
-    /// only repeats a refusal to one that is gone goes on.
+    /// it is: a duty that changed after it was offered would be taken over as it had been.
     pub(super) fn is_engaged(&self) -> bool {
-        self.offers().are_under_way() && !self.refuses_in_vain()
+        self.offers().are_under_way()
     }
 
-    /// Whether all that is left of its exchanges is a refusal to a robot that is gone.
-    fn refuses_in_vain(&self) -> bool {
-        let reply = self.offers().reply();
-        self.partner_in_exchange().is_none() && reply.is_some_and(|it| self.is_gone(it.to))
+    /// Whether it has refused the offer of a robot that is gone.
+    pub(super) fn refuses_gone_mover(&self) -> bool {
+        let refusal = self.offers().reply().filter(|reply| reply.accepted.is_none());
+        refusal.is_some_and(|refusal| self.is_gone(refusal.to))
     }
 
     /// Whether a robot gives its duty to this one, or has given it and has not taken the other duty yet.

@@ -79,6 +79,11 @@ impl RouteLink {
     pub fn flow(&self) -> f64 {
         self.share * self.reliability
     }
+
+    /// A share that the routing method gives it, if it is used.
+    fn usable(&self, share: f64) -> f64 {
+        if share < LEAST_SHARE || self.is_retiring { 0.0 } else { share }
+    }
 }
 
 /// Where the link to `node` is among links, which are in the order of their receivers.
@@ -120,6 +125,7 @@ impl Robot {
         self.drop_flows_without_link();
         self.expected_link = 0;
         self.dual_step_size = self.safe_dual_step();
+        self.told_report = None;
         self.upstream = self.tree_parent();
         self.inflow = 0.0;
         self.inflows.clear();
@@ -146,15 +152,17 @@ impl Robot {
         }
     }
 
-    /// Says how its equation c_i ≥ η stands.
-    pub(super) fn tell_multiplier(&self, outputs: &mut NodeOutputs) {
+    /// Says how its equation c_i ≥ η stands: in the first iteration of a period, and whenever that has changed.
+    pub(super) fn tell_multiplier(&mut self, outputs: &mut NodeOutputs) {
         let report = match &self.routing {
             RoutingState::Adal(state) => state.report(),
             RoutingState::Dual(state) => {
                 NeighbourReport { multiplier: state.multiplier(), mismatch: 0.0, crowding: 1.0 }
             }
         };
-        outputs.broadcast(Message::Multiplier { report, parent: self.upstream });
+        if self.told_report.replace(report) != Some(report) {
+            outputs.broadcast(Message::Multiplier { report, parent: self.upstream });
+        }
     }
 
     /// A neighbour reports how its equation stands, and where its demand will go.
@@ -164,9 +172,9 @@ impl Robot {
         report: NeighbourReport,
         parent: Option<NodeId>,
     ) {
-        if let Some(link) = self.link_to(from) {
-            link.report = Some(report);
-        }
+        let link = self.link_to(from);
+        let is_new = link.is_some_and(|link| link.report.replace(report) != Some(report));
+        self.has_new_multipliers |= is_new;
         if parent == Some(self.id)
             && let Err(at) = self.demands.binary_search_by_key(&from, |&(child, _)| child)
         {
@@ -189,23 +197,34 @@ impl Robot {
         Some(link)
     }
 
-    /// The primal iteration (13), or that of ADAL.
+    /// The primal iteration (13), or that of ADAL. Shares that minimise the local Lagrangian do so until a multiplier
+    /// changes.
     pub(super) fn primal_step(&mut self) {
+        let has_new_multipliers = std::mem::take(&mut self.has_new_multipliers);
         match self.routing {
+            RoutingState::Dual(_) if !has_new_multipliers && !self.has_untold_flows => {
+                debug_assert!(self.may_skip(Self::shares_stand), "robot {}: old shares", self.id);
+                return;
+            }
             RoutingState::Dual(_) => self.minimise_locally(),
             RoutingState::Adal(state) => self.approach_minimiser(state),
         }
         for link in &mut self.links {
-            if link.share < LEAST_SHARE || link.is_retiring {
-                link.share = 0.0;
-            }
+            link.share = link.usable(link.share);
             link.iterate = link.share;
         }
         self.has_untold_flows = true;
     }
 
-    /// The shares that minimise the local Lagrangian, eq. (13).
     fn minimise_locally(&mut self) {
+        let shares = self.minimiser();
+        for (link, share) in self.links.iter_mut().zip(shares) {
+            link.share = share;
+        }
+    }
+
+    /// The shares that minimise the local Lagrangian, eq. (13).
+    fn minimiser(&self) -> Vec<f64> {
         let offers: Vec<LinkOffer> = self
             .links
             .iter()
@@ -217,9 +236,13 @@ impl Robot {
             .collect();
         let mut shares = Vec::with_capacity(offers.len());
         local_minimiser(self.multiplier(), &offers, BUDGET, &mut shares);
-        for (link, share) in self.links.iter_mut().zip(shares) {
-            link.share = share;
-        }
+        shares
+    }
+
+    /// Whether its shares are those that it would choose now.
+    fn shares_stand(&self) -> bool {
+        let chosen = self.links.iter().zip(self.minimiser());
+        chosen.into_iter().all(|(link, share)| link.usable(share).to_bits() == link.share.to_bits())
     }
 
     /// Part of the way to the shares that minimise the local augmented Lagrangian.
@@ -305,6 +328,7 @@ impl Robot {
         debug_assert!(self.may_skip(Self::outflow_stands), "robot {} overlooks its flows", self.id);
         let residual = self.told_outflow - self.inflow - self.rate;
         let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
+        let before = self.multiplier();
         match &mut self.routing {
             RoutingState::Adal(state) => {
                 state.dual_step(residual, reserve, &AdalSettings::default())
@@ -320,6 +344,7 @@ impl Robot {
                 };
             }
         }
+        self.has_new_multipliers |= self.multiplier() != before;
     }
 
     /// ε of (14), from the links that meet in this robot's equation.

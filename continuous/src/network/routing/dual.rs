@@ -12,6 +12,12 @@ mod proofs;
 /// feasibility: [`repair`](super::repair) closes the gap.
 pub const MULTIPLIER_CAP: f64 = 100.0;
 
+/// Multipliers that differ by less count as the same, in units of the objective per unit of rate.
+///
+/// Flows then differ by about as little, far less than what the sweep evens out; and where robots stand still, they
+/// have nothing more to tell each other after some tens of control periods.
+const SAME_MULTIPLIER: f64 = 1e-10;
+
 /// One step of (14) with its sign put right: [λ − ε(c − η)]₊, capped at [`MULTIPLIER_CAP`].
 ///
 /// `step` is ε, see [`safe_step`]; `residual` is c_i, for the shares that answered the present
@@ -93,10 +99,15 @@ impl DualState {
         self.multiplier
     }
 
-    /// The state after one accelerated step; the arguments are those of [`dual_step`].
+    /// The state after one accelerated step; the arguments are those of [`dual_step`]. A state that has come to rest,
+    /// up to 10⁻¹⁰, stays as it is.
     #[must_use]
     pub fn step(self, step: f64, residual: f64, reserve: f64) -> Self {
         let stepped = dual_step(self.multiplier, step, residual, reserve);
+        let stays = |value: f64| (value - self.multiplier).abs() <= SAME_MULTIPLIER;
+        if stays(stepped) && stays(self.previous) {
+            return self;
+        }
         let progress = stepped - self.previous;
         let against = (self.multiplier - stepped) * progress > 0.0;
         let momentum = if against { 1.0 } else { self.momentum };
