@@ -366,7 +366,8 @@ mod tests {
 
     fn hear(robot: &mut Robot, beacon: &Beacon) {
         let beacon = Arc::new(beacon.clone());
-        let message = Message::Beacon { period: 1, roll: Roll::default(), confirmed: None, beacon };
+        let period = robot.period;
+        let message = Message::Beacon { period, roll: Roll::default(), confirmed: None, beacon };
         let mut outputs = Outputs::of(0);
         robot.step(Input::Heard { from: 1, message: &message }, &mut outputs).expect("it goes on");
         tick(robot);
