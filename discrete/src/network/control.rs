@@ -2,8 +2,8 @@
 //!
 //! Control is sampled. Time passes in one location only, [`Stage::Moving`]; at the sample the robot
 //! goes through the others, which take no time. In each it waits for what its neighbours send, up to
-//! the next tick of its clock; then it processes what it has received, and sends. Sweeps, reservation and
-//! negotiation have a fixed number of rounds, in which a robot with nothing to do does not tick.
+//! the next tick of its clock; then it processes what it has received, and sends. Iterations, sweeps, reservation
+//! and negotiation have a fixed number of rounds, in which a robot with nothing to do does not tick.
 
 use crate::{Row, TransitionTable, Urgency, vocabulary};
 
@@ -16,10 +16,8 @@ vocabulary! {
         Beacons = "beacons",
         /// The flows of the period before, over the links as they are now; for ADAL.
         OldFlows = "old flows",
-        /// Multipliers.
-        Multipliers = "multipliers",
-        /// Flows.
-        Flows = "flows",
+        /// In turn, multipliers and flows.
+        Iterations = "iterations",
         /// In turn, demands of its children in the tree, flows, shortages and flows taken back.
         Sweeps = "sweeps",
         /// Grants of the flows that it plans.
@@ -102,12 +100,12 @@ pub const CONTROL: TransitionTable<Stage, StageEvent> = {
     TransitionTable::new(&[
         row(Moving, On::SampleDue, Beacons),
         row(Beacons, On::NextRound, Beacons),
-        row(Beacons, On::RoutesDue, Multipliers),
+        row(Beacons, On::RoutesDue, Iterations),
         row(Beacons, On::OldFlowsDue, OldFlows),
-        row(OldFlows, On::OldFlowsHeard, Multipliers),
-        row(Multipliers, On::MultipliersHeard, Flows),
-        row(Flows, On::NextIteration, Multipliers),
-        row(Flows, On::SweepDue, Sweeps),
+        row(OldFlows, On::OldFlowsHeard, Iterations),
+        row(Iterations, On::MultipliersHeard, Iterations),
+        row(Iterations, On::NextIteration, Iterations),
+        row(Iterations, On::SweepDue, Sweeps),
         row(Sweeps, On::DemandsHeard, Sweeps),
         row(Sweeps, On::SweepOver, Sweeps),
         row(Sweeps, On::SweepsOver, Reserving),

@@ -32,14 +32,21 @@ pub fn old_flows_due() -> Guard {
     Guard::new("old flows due", last_round().and(proposition("adal")))
 }
 
-/// Another iteration of the routes follows.
+/// The multipliers of an iteration of the routes have been told.
+pub fn multipliers_heard() -> Guard {
+    Guard::new("multipliers heard", proposition("hears_multipliers"))
+}
+
+/// The flows of an iteration of the routes have been told, and another one follows.
 pub fn next_iteration() -> Guard {
-    Guard::new("next iteration", variable("iteration").less_than(variable("iterations")))
+    let last = proposition("last_iteration");
+    Guard::new("next iteration", (!proposition("hears_multipliers")).and(!last))
 }
 
 /// The last iteration of the routes is over.
 pub fn sweep_due() -> Guard {
-    Guard::new("sweep due", variable("iteration").at_least(variable("iterations")))
+    let last = proposition("last_iteration");
+    Guard::new("sweep due", (!proposition("hears_multipliers")).and(last))
 }
 
 /// Demands have gone up the tree.

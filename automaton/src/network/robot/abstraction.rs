@@ -320,6 +320,7 @@ impl Robot {
             routes_fall_short: _,
             has_untold_flows: _,
             has_new_multipliers: _,
+            has_come_to_rest: _,
             is_unsettled: _,
             destination: _,
             target: _, // by the announcement

@@ -14,8 +14,7 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 use super::{Robot, RobotError};
 use crate::network::act::{self, acting};
 use crate::network::control::{
-    Beacons, Control, Flows, Moving, Multipliers, Negotiation, OldFlows, Planning, Reserving,
-    Sweeps,
+    Beacons, Control, Iterations, Moving, Negotiation, OldFlows, Planning, Reserving, Sweeps,
 };
 use crate::network::member::NodeOutputs;
 
@@ -198,109 +197,109 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
             On::SampleDue,
             guards::sample_due(),
             &[RestartClock, CountRounds, Jump, Consider, TellBeacon],
-            |_: &Moving| Beacons {},
+            |_: &Moving| Beacons,
         ))
         .carried_out(row(
             On::NextRound,
             guards::next_round(),
             &[Deliberate, Jump, TellBeacon],
-            |_: &Beacons| Beacons {},
+            |_: &Beacons| Beacons,
         ))
         .carried_out(row(
             On::RoutesDue,
             guards::routes_due(),
-            &[Deliberate, Jump, SurveyLinks, TellMultiplier],
-            |_: &Beacons| Multipliers { iteration: 1 },
+            &[Deliberate, Jump, SurveyLinks, TellMultiplier, CountRounds],
+            |_: &Beacons| Iterations,
         ))
         .carried_out(row(
             On::OldFlowsDue,
             guards::old_flows_due(),
             &[Deliberate, Jump, SurveyLinks, TellFlows],
-            |_: &Beacons| OldFlows {},
+            |_: &Beacons| OldFlows,
         ))
         .carried_out(row(
             On::OldFlowsHeard,
             guards::heard(),
-            &[BeginRoutes, TellMultiplier],
-            |_: &OldFlows| Multipliers { iteration: 1 },
+            &[BeginRoutes, TellMultiplier, CountRounds],
+            |_: &OldFlows| Iterations,
         ))
         .carried_out(row(
             On::MultipliersHeard,
-            guards::heard(),
+            guards::multipliers_heard(),
             &[StepPrimal, TellFlows],
-            |heard: &Multipliers| Flows { iteration: heard.iteration },
+            |_: &Iterations| Iterations,
         ))
         .carried_out(row(
             On::NextIteration,
             guards::next_iteration(),
             &[StepDual, TellMultiplier],
-            |flows: &Flows| Multipliers { iteration: flows.iteration + 1 },
+            |_: &Iterations| Iterations,
         ))
         .carried_out(row(
             On::SweepDue,
             guards::sweep_due(),
             &[StepDual, BeginSweep, CountRounds],
-            |_: &Flows| Sweeps {},
+            |_: &Iterations| Sweeps,
         ))
         .carried_out(row(
             On::DemandsHeard,
             guards::demands_heard(),
             &[EndSweep, TellFlows],
-            |_: &Sweeps| Sweeps {},
+            |_: &Sweeps| Sweeps,
         ))
         .carried_out(row(
             On::SweepOver,
             guards::sweep_over(),
             &[SettleResidual, AdmitShortage],
-            |_: &Sweeps| Sweeps {},
+            |_: &Sweeps| Sweeps,
         ))
         .carried_out(row(
             On::SweepsOver,
             guards::sweeps_over(),
             &[SettleResidual, AskForFlows, CountRounds],
-            |_: &Sweeps| Reserving {},
+            |_: &Sweeps| Reserving,
         ))
         .carried_out(row(
             On::ShortagesHeard,
             guards::shortages_heard(),
             &[TellFlows],
-            |_: &Sweeps| Sweeps {},
+            |_: &Sweeps| Sweeps,
         ))
         .carried_out(row(On::ReliefsHeard, guards::reliefs_heard(), &[SweepAgain], |_: &Sweeps| {
-            Sweeps {}
+            Sweeps
         }))
         .carried_out(row(
             On::GrantsHeard,
             guards::grants_heard(),
             &[SettleFlows],
-            |_: &Reserving| Reserving {},
+            |_: &Reserving| Reserving,
         ))
         .carried_out(row(On::RoutesDone, guards::routes_done(), &[EndRoutes], |_: &Reserving| {
-            Planning {}
+            Planning
         }))
         .carried_out(row(
             On::MoveDue,
             guards::heard(),
             &[Propose, TellProposal, CountRounds],
-            |_: &Planning| Negotiation {},
+            |_: &Planning| Negotiation,
         ))
         .carried_out(row(
             On::ProposalsHeard,
             guards::proposals_heard(),
             &[JudgeMoves],
-            |_: &Negotiation| Negotiation {},
+            |_: &Negotiation| Negotiation,
         ))
         .carried_out(row(
             On::NextAttempt,
             guards::next_attempt(),
             &[TellProposal],
-            |_: &Negotiation| Negotiation {},
+            |_: &Negotiation| Negotiation,
         ))
         .carried_out(row(
             On::MoveCertified,
             guards::move_certified(),
             &[StayWithoutConsent, SetOff, Jump],
-            |_: &Negotiation| Moving {},
+            |_: &Negotiation| Moving,
         ))
         .build()
 }

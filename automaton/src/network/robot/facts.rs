@@ -146,10 +146,6 @@ facts! {
             round: robot.round_count.count() as f64,
             /// The number of rounds in this control period.
             rounds: robot.site.settings.rounds_per_period as f64,
-            /// The number of this iteration of the routes.
-            iteration: robot.control.count() as f64,
-            /// The number of iterations in a control period.
-            iterations: robot.site.settings.routing_iterations as f64,
         }
         propositions {
             /// Another node has begun the next control period.
@@ -244,6 +240,10 @@ facts! {
             tree_settles: robot.awaits_retirements(),
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
+            /// This round of the iterations is for multipliers.
+            hears_multipliers: robot.round_count.is_for_multipliers(),
+            /// This iteration is the last of the control period.
+            last_iteration: robot.round_count.is_last_of(robot.site.settings.routing_iterations),
             /// This round of a sweep is for demands.
             hears_demands: robot.round_count.of_sweep() == SweepRound::Demands,
             /// This round of a sweep is for flows.

@@ -147,6 +147,8 @@ pub struct Robot {
     has_untold_flows: bool,
     /// A multiplier has changed, its own or a neighbour's, since it chose its shares.
     has_new_multipliers: bool,
+    /// The last dual step has changed nothing.
+    has_come_to_rest: bool,
     is_unsettled: bool,
     must_judge_moves: bool,
 
@@ -303,7 +305,7 @@ impl Robot {
         Robot {
             id,
             rate,
-            control: Current::new(Control::Moving(Moving {})),
+            control: Current::new(Control::Moving(Moving)),
             round_count: Rounds::default(),
             acts: &[],
             is_new: true,
@@ -391,6 +393,7 @@ impl Robot {
             routes_fall_short: false,
             has_untold_flows: false,
             has_new_multipliers: false,
+            has_come_to_rest: false,
             is_unsettled: true,
             destination: None,
             waypoint: None,

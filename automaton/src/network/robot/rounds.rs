@@ -1,5 +1,5 @@
-//! Rounds of beacons, of sweeps, of the reservation and of the negotiation: the discrete clock of a
-//! robot.
+//! Rounds of beacons, of iterations, of sweeps, of the reservation and of the negotiation: the discrete
+//! clock of a robot.
 //!
 //! All have a fixed number of rounds, which all robots count alike. Where a robot has nothing to do
 //! until it hears something, it lets rounds pass; its count goes on, as τ does while time passes.
@@ -33,8 +33,8 @@ pub(super) enum SweepRound {
     Reliefs,
 }
 
-/// The number of the round of beacons, of sweeps, of the reservation or of the negotiation that is
-/// over at this tick, from 1; 0 before the first.
+/// The number of the round of beacons, of iterations, of sweeps, of the reservation or of the negotiation
+/// that is over at this tick, from 1; 0 before the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Rounds(usize);
 
@@ -57,6 +57,20 @@ impl Rounds {
 
     pub const fn count(self) -> usize {
         self.0
+    }
+
+    /// Multipliers and flows alternate.
+    pub const fn is_for_multipliers(self) -> bool {
+        self.0 % 2 == 1
+    }
+
+    /// Whether the flows of the last of these iterations are heard.
+    pub const fn is_last_of(self, iterations: usize) -> bool {
+        self.0 >= Self::of_iterations(iterations)
+    }
+
+    const fn of_iterations(iterations: usize) -> usize {
+        2 * iterations
     }
 
     pub const fn of_sweep(self) -> SweepRound {
@@ -106,8 +120,12 @@ impl Robot {
     /// Rounds that the robot lets pass before its next tick, counted from its last one: up to the
     /// last of its stage while it has nothing to tell or to judge.
     pub(super) fn rounds_to_pass(&self) -> usize {
+        let settings = &self.site.settings;
         let (has_nothing_to_do, last) = match self.stage() {
-            Stage::Beacons => (self.needs_no_round(), self.site.settings.rounds_per_period),
+            Stage::Beacons => (self.needs_no_round(), settings.rounds_per_period),
+            Stage::Iterations => {
+                (self.shares_rest(), Rounds::of_iterations(settings.routing_iterations))
+            }
             Stage::Sweeps => (self.routes_stand(), Rounds::LAST_OF_SWEEPS),
             Stage::Reserving => (!self.has_flow_news, self.next_of_reservation()),
             Stage::Negotiation => (self.has_no_moves_to_judge(), Rounds::LAST_OF_NEGOTIATION),

@@ -125,7 +125,7 @@ impl Robot {
         self.drop_flows_without_link();
         self.expected_link = 0;
         self.dual_step_size = self.safe_dual_step();
-        self.told_report = None;
+        (self.told_report, self.has_come_to_rest) = (None, false);
         self.upstream = self.tree_parent();
         self.inflow = 0.0;
         self.inflows.clear();
@@ -293,7 +293,7 @@ impl Robot {
 
     /// A neighbour tells the flow that it sends to this robot.
     pub(super) fn hear_flow(&mut self, from: NodeId, flow: f64) {
-        self.is_unsettled = true;
+        (self.is_unsettled, self.has_come_to_rest) = (true, false);
         match self.inflows.binary_search_by_key(&from, |&(sender, _)| sender) {
             Ok(at) if flow > 0.0 => self.inflows[at].1 = flow,
             Ok(at) => {
@@ -328,7 +328,7 @@ impl Robot {
         debug_assert!(self.may_skip(Self::outflow_stands), "robot {} overlooks its flows", self.id);
         let residual = self.told_outflow - self.inflow - self.rate;
         let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
-        let before = self.multiplier();
+        let (before, told) = (self.routing, self.multiplier());
         match &mut self.routing {
             RoutingState::Adal(state) => {
                 state.dual_step(residual, reserve, &AdalSettings::default())
@@ -344,7 +344,13 @@ impl Robot {
                 };
             }
         }
-        self.has_new_multipliers |= self.multiplier() != before;
+        self.has_new_multipliers |= self.multiplier() != told;
+        self.has_come_to_rest = self.routing == before && matches!(before, RoutingState::Dual(_));
+    }
+
+    /// Whether further iterations change nothing, as long as it hears nothing new.
+    pub(super) fn shares_rest(&self) -> bool {
+        self.has_come_to_rest && !self.has_new_multipliers && !self.has_untold_flows
     }
 
     /// ε of (14), from the links that meet in this robot's equation.

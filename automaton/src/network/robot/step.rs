@@ -199,8 +199,7 @@ impl Robot {
 
     /// Whether the plan of its routes can still change: what is heard later does not.
     fn is_planning_routes(&self) -> bool {
-        use Stage::{Flows, Multipliers, OldFlows, Sweeps};
-        matches!(self.stage(), OldFlows | Multipliers | Flows | Sweeps)
+        matches!(self.stage(), Stage::OldFlows | Stage::Iterations | Stage::Sweeps)
     }
 
     #[inline(never)]

@@ -477,7 +477,7 @@ fn a_robot_gives_its_move_up_at_the_last_chance() {
     for (rounds, moves) in [(15, true), (16, false)] {
         let mut robot = mover();
         proposed(&mut robot).expect("nothing is in its way");
-        robot.control = Current::new(Control::Negotiation(Negotiation {}));
+        robot.control = Current::new(Control::Negotiation(Negotiation));
         robot.round_count.restart();
         robot.round_count.pass(rounds);
         robot.yield_to_objection();
