@@ -551,10 +551,16 @@ impl Robot {
     /// A control period begins: what is looked at once a period.
     fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.last_beacon.tell_anew();
-        self.note_change();
+        let considered =
+            |robot: &Self| (robot.unused_periods, robot.orphaned_periods, robot.partner);
+        let before = considered(self);
         self.count_unused_periods();
         self.count_orphaned_periods();
         self.consider_exchange();
+        if considered(self) == before && self.is_settled() {
+            return Ok(());
+        }
+        self.note_change();
         self.advance_exchange()
     }
 
@@ -614,6 +620,13 @@ impl Robot {
     /// The robot's state has changed: it has to deliberate, to send its state and to measure its facts.
     fn note_change(&mut self) {
         (self.has_news, self.has_unsent_news, self.is_unmeasured) = (true, true, true);
+    }
+
+    /// A control period begins or ends.
+    fn note_passing(&mut self) {
+        if !self.is_settled() {
+            self.note_change();
+        }
     }
 
     fn report(&mut self, event: MissionEvent) {

@@ -302,7 +302,7 @@ impl Robot {
         }
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
-        self.note_change();
+        self.note_passing();
     }
 
     /// It stays where it is until the next sample, which every certified move allows.
@@ -314,8 +314,8 @@ impl Robot {
 
     /// A new control period begins.
     pub(super) fn restart_clock(&mut self) {
-        self.note_change();
         self.period = self.period.saturating_add(1);
+        self.note_passing();
         self.posts_made = 0;
         self.velocity = Vector::zeros();
         (self.clock, self.is_behind) = (0.0, false);

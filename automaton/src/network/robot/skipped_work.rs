@@ -5,8 +5,11 @@
 //! beacons and links, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
 //! messages, which are processed again on a copy. Explorers verify it in every state of a robot.
 
+use pleach_continuous::Vector;
+
 use super::Robot;
 use crate::located::Place as _;
+use crate::network::duty::Duty;
 
 /// What is left out in missions is looked at in one control period in this many: it costs as much as doing it.
 const PERIODS_PER_CHECK: u32 = 4;
@@ -20,6 +23,26 @@ impl Robot {
     /// Whether something that would change nothing is left out, as far as it is looked at.
     pub(super) fn may_skip(&self, changes_nothing: impl FnOnce(&Self) -> bool) -> bool {
         !self.is_looked_at() || changes_nothing(self)
+    }
+
+    /// Whether a control period that begins or ends is like any other to it. It stands at a post, neither leads nor
+    /// is on Σ, hears all its neighbours, and nobody is missing: nothing that it works out depends on how long
+    /// something has lasted.
+    pub(super) fn is_settled(&self) -> bool {
+        use Duty::{Junction, Leaf, Relay, Standby};
+        matches!(*self.duty, Standby(_) | Relay(_) | Junction(_) | Leaf(_))
+            && self.is_quiet
+            && !self.is_late
+            && !self.awaits_confirmation
+            && self.waypoint.is_none()
+            && self.velocity == Vector::zeros()
+            && self.orphaned_periods == 0
+            && self.roll.absent.is_empty()
+            && self.wrecks.is_empty()
+            && self
+                .neighbours
+                .iter()
+                .all(|known| known.was_heard() && known.is_present(self.period))
     }
 
     /// Whether its facts are as it has measured them, and no guard holds.
