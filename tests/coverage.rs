@@ -35,6 +35,10 @@ const REASONS: &[([&str; 4], &str)] = &[
     ),
     (["duty", "waiting on the path", "leaf kept", ""], "Σ is given up while a leaf waits on it"),
     (
+        ["exchange", "refusing", "refusal in vain", ""],
+        "the mover stops before it hears that it is refused: a unit test takes it",
+    ),
+    (
         ["exchange", "", "refuses", ""],
         "the robot that is asked has children that would lose their link; taken by \
          `explore -- thorough`",

@@ -193,7 +193,8 @@ impl Robot {
     pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Offer<Duty>)> {
         self.neighbours.iter().find_map(|neighbour| {
             let (mover, offer) = (neighbour.id(), neighbour.beacon.offer.as_ref()?);
-            let is_asked = offer.asks(self.id, self.answered.get(&mover).map(|it| it.number))
+            let answered = self.answered.get(&mover).map(|answered| answered.number);
+            let is_asked = offer.asks(self.id, answered)
                 || self.has_refused_in_vain(mover, offer) && !self.is_gone(mover);
             is_asked.then_some((mover, offer))
         })
