@@ -249,9 +249,14 @@ impl Robot {
         self.heard_up_to = 0;
         let counts_silence = self.round_count.count() <= ROUNDS_TO_BE_HEARD;
         let mut at = 0;
+        let mut hears_all = true;
         while at < self.neighbours.len() {
             let is_heard = std::mem::take(&mut self.neighbours[at].is_heard);
+            hears_all &= is_heard;
             at = if is_heard || !counts_silence { at + 1 } else { self.miss(at) };
+        }
+        if counts_silence {
+            self.hears_all = hears_all;
         }
     }
 

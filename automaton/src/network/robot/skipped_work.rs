@@ -39,10 +39,7 @@ impl Robot {
             && self.orphaned_periods == 0
             && self.roll.absent.is_empty()
             && self.wrecks.is_empty()
-            && self
-                .neighbours
-                .iter()
-                .all(|known| known.was_heard() && known.is_present(self.period))
+            && self.hears_all
     }
 
     /// Whether its facts are as it has measured them, and no guard holds.
