@@ -496,7 +496,7 @@ impl Robot {
     }
 
     /// η, or nothing when the tree can carry no more than the rates.
-    fn reserve(&self) -> f64 {
+    pub(super) fn reserve(&self) -> f64 {
         if self.has_no_reserve { 0.0 } else { self.site.settings.routing_reserve }
     }
 

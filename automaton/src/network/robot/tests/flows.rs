@@ -1,12 +1,14 @@
 //! Which flows a robot plans, asks for, grants and uses (reservation), and how it routes.
 
 use pleach_continuous::network::LinkReliability as _;
+use pleach_continuous::network::routing::adal::NeighbourReport;
 use pleach_discrete::network::reservation::Lease;
 
 use super::*;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 use crate::network::robot::reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
+use crate::network::robot::routing::RouteLink;
 use crate::node::Destination;
 
 const LEASE: u32 = 8;
@@ -457,6 +459,55 @@ fn flows_are_told_where_they_have_changed() {
     robot.has_untold_flows = true;
     robot.tell_flows(&mut outputs);
     assert_eq!(sent(&mut outputs).len(), 1);
+}
+
+/// In the first iteration of a control period every robot tells its multiplier; in others, if that has changed.
+#[test]
+fn a_multiplier_is_told_in_each_period_and_where_it_has_changed() {
+    let mut robot = router();
+    let mut outputs = NodeOutputs::of(0);
+    let mut told = |robot: &mut Robot| {
+        robot.tell_multiplier(&mut outputs);
+        sent(&mut outputs).len()
+    };
+    assert_eq!([told(&mut robot), told(&mut robot)], [1, 0]);
+    robot.dual_step();
+    assert_eq!([told(&mut robot), told(&mut robot)], [1, 0]);
+    robot.survey_links();
+    assert_eq!(told(&mut robot), 1);
+}
+
+/// Once the shares rest, further iterations change nothing until a new multiplier or flow is heard.
+#[test]
+fn iterations_pass_until_something_new_is_heard() {
+    let mut robot = router();
+    let mut outputs = NodeOutputs::of(0);
+    let report = |multiplier| NeighbourReport { multiplier, mismatch: 0.0, crowding: 1.0 };
+    let iterate = |robot: &mut Robot, outputs: &mut NodeOutputs| {
+        robot.primal_step();
+        robot.tell_flows(outputs);
+        robot.dual_step();
+    };
+    robot.hear_multiplier(5, report(1.0), None);
+    for _ in 0..200 {
+        iterate(&mut robot, &mut outputs);
+    }
+    assert!(robot.shares_rest());
+    let planned = |robot: &Robot| robot.links.iter().map(RouteLink::flow).collect::<Vec<_>>();
+    let at_rest = planned(&robot);
+    assert!((at_rest.iter().sum::<f64>() - 0.1 - robot.reserve()).abs() < 1e-8, "c = η");
+    iterate(&mut robot, &mut outputs);
+    robot.hear_multiplier(5, report(1.0), None);
+    assert!(robot.shares_rest() && planned(&robot) == at_rest);
+
+    let mut informed = robot.clone();
+    informed.hear_multiplier(5, report(0.0), None);
+    assert!(!informed.shares_rest());
+    iterate(&mut informed, &mut outputs);
+    assert!(planned(&informed)[0] > at_rest[0], "robot 5 has become cheaper");
+
+    robot.hear_flow(5, 0.05);
+    assert!(!robot.shares_rest());
 }
 
 /// The flow of a sender has not been heard, and it has less to send than before.

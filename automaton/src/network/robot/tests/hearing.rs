@@ -1,5 +1,6 @@
 //! What becomes of what a robot hears, and of those that it does not hear any more.
 
+use pleach_continuous::Vector;
 use pleach_discrete::network::Stage;
 
 use super::*;
@@ -336,6 +337,45 @@ fn a_robot_that_joins_late_stays_until_it_is_told_who_is_absent() {
     let mut robot = robot();
     robot.hear_of_later_period(NOW + 2);
     assert!(!robot.knows_who_is_absent(), "it has heard nobody when it began again");
+}
+
+/// What a robot works out at its post stands from period to period, unless it moves, does not hear somebody, or hears
+/// that one does not take part.
+#[test]
+fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
+    let standing = || {
+        let mut robot = flows::router();
+        robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(20, 0) });
+        robot.round_count.restart();
+        robot.end_round();
+        robot.parent = robot.tree_parent();
+        robot.process_messages().expect("guards have values");
+        robot.measures();
+        robot.has_news = false;
+        robot
+    };
+    let deliberates = |mut robot: Robot| {
+        robot.restart_clock();
+        robot.round_count.restart();
+        robot.begin_period().expect("guards have values");
+        robot.has_news
+    };
+    assert!(!deliberates(standing()));
+    let changes: [fn(&mut Robot); 3] = [
+        |robot| robot.velocity = Vector::new(0.1, 0.0),
+        |robot| silent_rounds(robot, 1),
+        |robot| {
+            let gone = [1].into_iter().collect();
+            let absent = Arc::new(Absent { gone, ..Absent::default() });
+            robot.roll = Roll { called: NOW, absent };
+        },
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        let mut robot = standing();
+        change(&mut robot);
+        robot.has_news = false;
+        assert!(deliberates(robot), "{number}");
+    }
 }
 
 #[test]
