@@ -16,9 +16,9 @@ use pleach_benches::course::Course;
 use pleach_benches::hall::hall;
 
 const SIZES: [usize; 3] = [100, 1_000, 10_000];
-/// Control periods that count, after those in which the network gathers.
+/// Control periods that count, after those in which the network gathers and its routes come to rest.
 const PERIODS: u32 = 10;
-const GATHERING: usize = 20;
+const GATHERING: usize = 60;
 
 /// What was measured in a hall.
 struct Row {
