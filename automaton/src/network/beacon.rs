@@ -246,8 +246,9 @@ impl Beacon {
         }
     }
 
-    /// Where the sender, heard in this control period, says that robots are which are attached to it: it had
-    /// heard them in the period in which it last had news, or in the one before, and it has news in each period.
+    /// Where the sender, heard in this control period, says that robots are which are attached to it. It has heard
+    /// them two periods ago or since: it works them out anew in each period, unless it hears all its neighbours in
+    /// each ([`is_undisturbed`](super::robot::Robot::is_undisturbed)).
     pub(super) fn sightings(&self, period: u32) -> impl Iterator<Item = Wreck> {
         let heard_in = period.saturating_sub(2);
         let sighting = move |it: &Branch| Wreck::heard(it.robot, it.place, heard_in);

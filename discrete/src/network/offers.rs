@@ -157,7 +157,7 @@ impl<D: Copy> Offers<D> {
         reply.accepted
     }
 
-    /// The parked robot no longer repeats its reply if that is a refusal.
+    /// The robot that was asked no longer repeats its reply if that is a refusal.
     pub fn withdraw_refusal(&mut self) {
         self.reply.take_if(|reply| reply.accepted.is_none());
     }

@@ -57,9 +57,9 @@ acts! {
     TellFlows = "tell flows",
     /// Routes begin where those of the period before ended.
     BeginRoutes = "begin routes",
-    /// It tells its multiplier.
+    /// It tells its multiplier, if that has changed in this period.
     TellMultiplier = "tell λ",
-    /// F_ij from the multipliers (line 2).
+    /// F_ij from the multipliers, if one has changed (line 2).
     StepPrimal = "primal step",
     /// λ_i from the flows (line 2).
     StepDual = "dual step",

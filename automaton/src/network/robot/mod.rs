@@ -149,7 +149,7 @@ pub struct Robot {
     has_untold_flows: bool,
     /// A multiplier has changed, its own or a neighbour's, since it chose its shares.
     has_new_multipliers: bool,
-    /// The last dual step has changed nothing.
+    /// The last dual step has changed nothing. ADAL does not come to rest.
     has_come_to_rest: bool,
     is_unsettled: bool,
     must_judge_moves: bool,
@@ -554,13 +554,13 @@ impl Robot {
     /// A control period begins: what is looked at once a period.
     fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.last_beacon.tell_anew();
-        let considered =
-            |robot: &Self| (robot.unused_periods, robot.orphaned_periods, robot.partner);
-        let before = considered(self);
+        let counted = |robot: &Self| (robot.unused_periods, robot.orphaned_periods, robot.partner);
+        let before = counted(self);
         self.count_unused_periods();
         self.count_orphaned_periods();
         self.consider_exchange();
-        if considered(self) == before && self.is_settled() {
+        if counted(self) == before && self.is_undisturbed() {
+            // Nobody is gone, so that no partner in an exchange is.
             return Ok(());
         }
         self.note_change();
@@ -625,9 +625,9 @@ impl Robot {
         (self.has_news, self.has_unsent_news, self.is_unmeasured) = (true, true, true);
     }
 
-    /// A control period begins or ends.
-    fn note_passing(&mut self) {
-        if !self.is_settled() {
+    /// A control period begins or ends: its state has changed with that, unless nothing depends on it.
+    fn note_period_boundary(&mut self) {
+        if !self.is_undisturbed() {
             self.note_change();
         }
     }

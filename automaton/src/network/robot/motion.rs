@@ -127,7 +127,9 @@ impl Robot {
         (self.proposal, self.problem) = (None, None);
         self.begin_negotiation();
         let Some(goal) = goal else {
-            self.waypoint = None;
+            if self.waypoint.take().is_some() {
+                self.note_change();
+            }
             return;
         };
         if self.is_infeasible() || !self.may_leave_place() {
@@ -302,7 +304,7 @@ impl Robot {
         }
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
-        self.note_passing();
+        self.note_period_boundary();
     }
 
     /// It stays where it is until the next sample, which every certified move allows.
@@ -315,7 +317,7 @@ impl Robot {
     /// A new control period begins.
     pub(super) fn restart_clock(&mut self) {
         self.period = self.period.saturating_add(1);
-        self.note_passing();
+        self.note_period_boundary();
         self.posts_made = 0;
         self.velocity = Vector::zeros();
         (self.clock, self.is_behind) = (0.0, false);

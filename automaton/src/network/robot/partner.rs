@@ -9,7 +9,7 @@
 //! that remains gets shorter, and two members of the team exchange duties a few times at most until a newer notice is
 //! heard: exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
 //! begins again, as if it had stopped, and has neither. A refusal that a gone mover has not heard is withdrawn, and made
-//! again if that comes back with its offer. A mover that cannot pass takes a partner that is somewhat
+//! again if the mover comes back with its offer. A mover that cannot pass takes a partner that is somewhat
 //! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
@@ -55,7 +55,7 @@ fn stands_behind(ahead: Option<&TeamReport>, behind: Option<&TeamReport>) -> boo
 pub(super) struct Answered {
     /// The number of the offer.
     pub number: u32,
-    /// It was a refusal, and the other was gone before it heard it.
+    /// It was a refusal, and the mover was gone before it heard that.
     pub in_vain: bool,
 }
 

@@ -1,9 +1,10 @@
-//! Work that a robot skips where nothing has changed: processing messages, telling its state, evaluating guards, and
-//! going through its links.
+//! Work that a robot skips where nothing has changed: processing messages, telling its state, evaluating guards,
+//! going through its links, choosing shares, and all of these where a control period is like the one before.
 //!
 //! Skipping is right if the work would change nothing. Builds with debug assertions verify that for guards, facts,
-//! beacons and links, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
-//! messages, which are processed again on a copy. Explorers verify it in every state of a robot.
+//! beacons, links and shares, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
+//! messages, which are processed again on a copy. Explorers verify it in every state of a robot, but for shares and for
+//! periods that are like the one before: to them every period is new.
 
 use pleach_continuous::Vector;
 
@@ -25,10 +26,12 @@ impl Robot {
         !self.is_looked_at() || changes_nothing(self)
     }
 
-    /// Whether a control period that begins or ends is like any other to it. It stands at a post, neither leads nor
-    /// is on Σ, hears all its neighbours, and nobody is missing: nothing that it works out depends on how long
-    /// something has lasted.
-    pub(super) fn is_settled(&self) -> bool {
+    /// Whether a control period that begins or ends is like any other to the robot, so that what it has worked out
+    /// stands. It stays at a post that is neither of the team nor on Σ, and wants to go nowhere; it has heard each
+    /// neighbour in the last round in which all send, and takes none to be absent: nothing depends on how long
+    /// something has lasted. That it has heard each neighbour in the period is relied upon by those that it
+    /// [tells](crate::network::beacon::Beacon::sightings) where they are.
+    pub(super) fn is_undisturbed(&self) -> bool {
         use Duty::{Junction, Leaf, Relay, Standby};
         matches!(*self.duty, Standby(_) | Relay(_) | Junction(_) | Leaf(_))
             && self.is_quiet

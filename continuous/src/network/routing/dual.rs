@@ -99,8 +99,8 @@ impl DualState {
         self.multiplier
     }
 
-    /// The state after one accelerated step; the arguments are those of [`dual_step`]. A state that has come to rest,
-    /// up to 10⁻¹⁰, stays as it is.
+    /// The state after one accelerated step; the arguments are those of [`dual_step`]. Where neither this step nor the
+    /// last one changes the multiplier by more than 10⁻¹⁰, the state stays as it is, with its momentum.
     #[must_use]
     pub fn step(self, step: f64, residual: f64, reserve: f64) -> Self {
         let stepped = dual_step(self.multiplier, step, residual, reserve);

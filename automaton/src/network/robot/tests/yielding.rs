@@ -188,3 +188,28 @@ fn nobody_settles_beside_a_mover_that_gets_on() {
     assert!(!near(Beacon { parked: true, ..moving(0.1) }));
     assert!(!near(access_point(east(0.1))));
 }
+
+/// A robot that has asked for the way aside tells that it does not want it any more, though it has not moved.
+#[test]
+fn who_gives_up_stepping_aside_asks_for_no_way() {
+    let mut robot = robot();
+    robot.holds(redundant(20, 13));
+    robot.hears(beacon(2, Point::new(5.0, 4.4), fixed(13, 12), &[13, 12]));
+    robot.hears(asking(0.1));
+    (robot.waypoint, robot.still_periods) = (Some(east(0.1)), 20);
+    // The way of the mover now leads by at such a distance that no place beside is better.
+    let shift = Vector::new(0.0, 2.15 * CLEARANCE);
+    let way = Some(east(3.0) + shift);
+    robot.hears(Beacon { way, position: west(0.1) + shift, ..asking(0.1) });
+    robot.process_messages().expect("guards have values");
+    robot.jump().expect("guards have values");
+    robot.neighbours.iter_mut().for_each(|known| known.heard_in = NOW);
+    robot.hears_all = true;
+    assert!(robot.next_beacon().way.is_some());
+    robot.has_news = false;
+    robot.propose().expect("guards have values");
+    robot.set_off();
+    robot.restart_clock();
+    robot.begin_period().expect("guards have values");
+    assert_eq!(robot.next_beacon().way, None);
+}
