@@ -316,9 +316,8 @@ fn joined(rings: &[Ring], repairs: &mut Vec<Repair>) -> Result<Workspace, Worksp
     Ok(workspace.with_walls(bridges.into_iter()))
 }
 
-/// The lines that join two parts of a hole, with the workspace on both sides: each is drawn in both directions. It has no
-/// area, but is a wall. The boundary follows such a line to reach the outline of a hole: there
-/// it is none.
+/// The lines that join two parts of a hole, with the workspace on both sides: each is drawn in both directions, has no
+/// area, and is a wall. Where the boundary follows such a line to reach the outline of a hole, it is none.
 fn bridges(workspace: &Workspace, rings: &[Ring], repairs: &mut Vec<Repair>) -> Vec<Segment> {
     let mut walls: Vec<Segment> = Vec::new();
     for ring in rings.iter().filter(|ring| ring.polygon != Polygon::Boundary) {

@@ -253,6 +253,7 @@ impl Robot {
             closed,
             posts_made,
             neighbours: _, // by their beacons and their silence
+            hears_all: _,  // by their silence
             // Constant.
             rate: _,
             site: _,
@@ -320,7 +321,6 @@ impl Robot {
             routes_fall_short: _,
             has_untold_flows: _,
             has_new_multipliers: _,
-            hears_all: _, // by the rounds in which they have been silent
             has_come_to_rest: _,
             is_unsettled: _,
             destination: _,

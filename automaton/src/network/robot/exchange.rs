@@ -104,7 +104,9 @@ impl Holds<Exchange> for Robot {
                     self.answered.insert(mover, Answered { number, in_vain: false });
                 }
                 ExchangeEffect::RefusedInVain(mover) => {
-                    self.answered.entry(mover).and_modify(|answered| answered.in_vain = true);
+                    if let Some(answered) = self.answered.get_mut(&mover) {
+                        answered.in_vain = true;
+                    }
                 }
                 ExchangeEffect::PartnerAsked => self.partner = None,
                 ExchangeEffect::Takes(duty, partner) => {

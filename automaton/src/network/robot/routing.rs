@@ -241,8 +241,8 @@ impl Robot {
 
     /// Whether its shares are those that it would choose now.
     fn shares_stand(&self) -> bool {
-        let chosen = self.links.iter().zip(self.minimiser());
-        chosen.into_iter().all(|(link, share)| link.usable(share).to_bits() == link.share.to_bits())
+        let mut chosen = self.links.iter().zip(self.minimiser());
+        chosen.all(|(link, share)| link.usable(share).to_bits() == link.share.to_bits())
     }
 
     /// Part of the way to the shares that minimise the local augmented Lagrangian.
@@ -328,7 +328,7 @@ impl Robot {
         debug_assert!(self.may_skip(Self::outflow_stands), "robot {} overlooks its flows", self.id);
         let residual = self.told_outflow - self.inflow - self.rate;
         let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
-        let (before, told) = (self.routing, self.multiplier());
+        let (before, multiplier) = (self.routing, self.multiplier());
         match &mut self.routing {
             RoutingState::Adal(state) => {
                 state.dual_step(residual, reserve, &AdalSettings::default())
@@ -344,7 +344,7 @@ impl Robot {
                 };
             }
         }
-        self.has_new_multipliers |= self.multiplier() != told;
+        self.has_new_multipliers |= self.multiplier() != multiplier;
         self.has_come_to_rest = self.routing == before && matches!(before, RoutingState::Dual(_));
     }
 
@@ -496,7 +496,7 @@ impl Robot {
     }
 
     /// η, or nothing when the tree can carry no more than the rates.
-    pub(super) fn reserve(&self) -> f64 {
+    fn reserve(&self) -> f64 {
         if self.has_no_reserve { 0.0 } else { self.site.settings.routing_reserve }
     }
 

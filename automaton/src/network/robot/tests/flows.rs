@@ -495,7 +495,8 @@ fn iterations_pass_until_something_new_is_heard() {
     assert!(robot.shares_rest());
     let planned = |robot: &Robot| robot.links.iter().map(RouteLink::flow).collect::<Vec<_>>();
     let at_rest = planned(&robot);
-    assert!((at_rest.iter().sum::<f64>() - 0.1 - robot.reserve()).abs() < 1e-8, "c = η");
+    let reserve = robot.site.settings.routing_reserve;
+    assert!((at_rest.iter().sum::<f64>() - 0.1 - reserve).abs() < 1e-8, "c = η");
     iterate(&mut robot, &mut outputs);
     robot.hear_multiplier(5, report(1.0), None);
     assert!(robot.shares_rest() && planned(&robot) == at_rest);
