@@ -5,14 +5,13 @@
 //! ones: `cargo run --release --example stress -- FAMILY FIRST_SEED COUNT FOLDER`.
 
 use crate::floor_plans::{Family, scenario};
-use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach::automaton::network::scenario::ValidScenario;
-use pleach::discrete::network::Role;
-use pleach::mission::{Watcher, run};
-use proptest::prelude::*;
+use crate::missions::{Drawn, redundant};
+use pleach::automaton::network::record::Outcome;
+use pleach::automaton::network::scenario::Strategy;
+use pleach::mission::run;
 use proptest::test_runner::{Config, RngSeed};
+use proptest::{prop_assert, proptest};
 use rayon::prelude::*;
-use std::io;
 
 /// Missions of each family in every run; one in fifty may fail.
 const DAILY: u64 = 6;
@@ -21,38 +20,20 @@ const MANY: u64 = 100;
 /// Missions of the hall, which take some fifty times as long.
 const MANY_HALLS: u64 = 5;
 
-/// Counts the robots that are not needed.
-#[derive(Default)]
-struct Reserve {
-    redundant: usize,
-}
-
-impl Watcher for Reserve {
-    fn observe(&mut self, snapshot: &Snapshot, _: &[MissionEvent]) -> io::Result<()> {
-        self.redundant = snapshot.roles.iter().filter(|&&role| role == Role::Redundant).count();
-        Ok(())
-    }
-}
-
-/// How a mission ends, and how many robots are not needed then.
-fn end_of(scenario: &ValidScenario) -> (End, usize) {
-    let mut reserve = Reserve::default();
-    let end = run(scenario, &mut [&mut reserve]).unwrap().end;
-    (end, reserve.redundant)
-}
-
 /// What is wrong with the end of a mission, if anything is. Tasks can be reached, so that it ends
 /// with all of them serviced, or without a robot left in reach.
 fn complaint(family: Family, seed: u64) -> Option<String> {
-    let scenario = scenario(family, seed);
-    let (end, redundant) = end_of(&scenario);
+    let mission = Drawn::shared(family, seed, Strategy::Eager);
+    let (end, redundant) = (&mission.end, redundant(&mission.last));
     let fair = match end.outcome {
         Outcome::Serviced => true,
-        Outcome::InsufficientRobots => redundant == 0 || scenario.access_point.len() > 1,
+        Outcome::InsufficientRobots => {
+            redundant == 0 || scenario(family, seed).access_point.len() > 1
+        }
         _ => false,
     };
     (!fair).then(|| {
-        format!("{}: {:?}, {redundant} redundant: {}", scenario.name, end.outcome, end.reason)
+        format!("{}: {:?}, {redundant} redundant: {}", mission.name, end.outcome, end.reason)
     })
 }
 
@@ -64,7 +45,7 @@ fn complaints(families: &[Family]) -> Vec<String> {
 }
 
 /// Every family but the hall, which takes too long for every day.
-fn any_family() -> impl Strategy<Value = Family> {
+fn any_family() -> impl proptest::strategy::Strategy<Value = Family> {
     proptest::sample::select(Family::of_every_day().collect::<Vec<_>>())
 }
 
@@ -81,7 +62,7 @@ proptest! {
         family in any_family(),
         seed in 0_u64..1000,
     ) {
-        let (end, _) = end_of(&scenario(family, seed));
+        let end = run(&scenario(family, seed), &mut []).unwrap().end;
         let stated = !matches!(end.outcome, Outcome::InvariantViolated | Outcome::StepLimit);
         prop_assert!(stated, "{:?}: {}", end.outcome, end.reason);
     }

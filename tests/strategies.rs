@@ -2,9 +2,9 @@
 //! come. Each mission is held against every property while it runs.
 
 use crate::floor_plans::in_storms::mission_in_storm;
-use crate::floor_plans::{Family, scenario, strategies};
-use crate::missions::{Mission, run_by, shipped};
-use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
+use crate::floor_plans::{Family, strategies};
+use crate::missions::{Drawn, Mission, run_by, shipped, used};
+use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, ValidScenario};
 use pleach::discrete::network::{Phase, Role};
 use pleach::verify::network::storm::judged_run;
@@ -19,10 +19,6 @@ const PERIODS_IN_STORMS: usize = 1_500;
 /// The same mission by either strategy: the paper's, and the eager one.
 fn both(scenario: &Scenario) -> [Mission; 2] {
     [Strategy::Paper, Strategy::Eager].map(|strategy| run_by(strategy, scenario.clone()))
-}
-
-fn robots_used(mission: &Mission) -> usize {
-    mission.last().roles.iter().filter(|&&role| role != Role::Redundant).count()
 }
 
 /// In how many periods the primary team moves although it is not the active one.
@@ -48,7 +44,7 @@ fn the_studies_take_three_quarters_of_the_time_and_no_more_robots() {
         eager.assert_serviced();
         let periods = [&paper, &eager].map(|mission| mission.periods.len() as f64);
         assert!(periods[1] < 0.75 * periods[0], "{name}: {periods:?}");
-        assert!(robots_used(&eager) <= robots_used(&paper), "{name}");
+        assert!(used(eager.last()) <= used(paper.last()), "{name}");
         assert!(calls_ahead(&eager) > 0 && moves_on_its_own(&eager) > 0, "{name}");
         let is_ordered = (calls_ahead(&paper), moves_on_its_own(&paper)) == (0, 0);
         assert!(is_ordered, "{name}: in the paper's order one team moves at a time");
@@ -70,8 +66,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Whether a robot is part of the tree although it services nothing and nothing is attached to it.
-fn has_idle_node(mission: &Mission) -> bool {
-    let last = mission.last();
+fn has_idle_node(last: &Snapshot) -> bool {
     let used = |&robot: &usize| last.roles[robot] != Role::Redundant;
     let bears =
         |robot: usize| last.tree.iter().any(|(child, parent)| *parent == robot && used(child));
@@ -87,13 +82,13 @@ fn random_missions_are_serviced_alike_and_sooner() {
     let outcomes: Vec<_> = missions
         .into_par_iter()
         .map(|(family, seed)| {
-            let [paper, eager] = both(scenario(family, seed).scenario());
-            let said = format!("{}-{seed}: {}", family.name(), eager.end.reason);
-            let is_serviced = |mission: &Mission| mission.end.outcome == Outcome::Serviced;
-            assert!(!is_serviced(&paper) || is_serviced(&eager), "{said}");
-            assert!(!is_serviced(&eager) || !has_idle_node(&eager), "{said}");
-            let ratio = |of: &dyn Fn(&Mission) -> usize| of(&eager) as f64 / of(&paper) as f64;
-            (ratio(&|it| it.periods.len()), ratio(&robots_used))
+            let [paper, eager] = [Strategy::Paper, Strategy::Eager]
+                .map(|strategy| Drawn::shared(family, seed, strategy));
+            let said = format!("{}: {}", eager.name, eager.end.reason);
+            assert!(!paper.is_serviced() || eager.is_serviced(), "{said}");
+            assert!(!eager.is_serviced() || !has_idle_node(&eager.last), "{said}");
+            let ratio = |of: &dyn Fn(&Drawn) -> usize| of(&eager) as f64 / of(&paper) as f64;
+            (ratio(&|it| it.periods), ratio(&|it| used(&it.last)))
         })
         .collect();
     let (times, robots): (Vec<f64>, Vec<f64>) = outcomes.into_iter().unzip();
@@ -102,12 +97,13 @@ fn random_missions_are_serviced_alike_and_sooner() {
     assert!(robots < 1.0, "median of the robots: {robots}");
 }
 
+/// Those that failed in the paper's order; the others are eager as they are.
 #[test]
 fn what_failed_once_does_not_fail_with_recruits_called_for_ahead() {
-    for file in crate::found_missions::files("tests/scenarios/found") {
-        let scenario = pleach::scenario_file::read(&file).unwrap();
-        let eager = run_by(Strategy::Eager, scenario.into_scenario());
-        eager.assert_serviced();
+    let files = crate::found_missions::files("tests/scenarios/found").into_iter();
+    let scenarios = files.map(|file| pleach::scenario_file::read(&file).unwrap().into_scenario());
+    for scenario in scenarios.filter(|it| it.control.strategy == Some(Strategy::Paper)) {
+        run_by(Strategy::Eager, scenario).assert_serviced();
     }
 }
 

@@ -181,21 +181,33 @@ impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
         B: DataOf<P>,
         S: Holds<P> + Valuation,
     {
-        let missing = |location: P::Location| {
-            let location = location.name();
-            move || EvaluationError::MissingData { location }
+        let place_after = move |state: &S, effects: &mut S::Effects| {
+            let data = A::of(state.current()).ok_or(A::LOCATION)?;
+            carry_over(data, state, effects).map(B::into_place).ok_or(B::LOCATION)
         };
-        let reset = Reset::fallible(name, move |state: &mut S| {
-            let mut effects = S::Effects::default();
-            let data = A::of(state.current()).ok_or_else(missing(A::LOCATION))?;
-            let target = carry_over(data, state, &mut effects);
-            let target = target.ok_or_else(missing(B::LOCATION))?.into_place();
-            *state.current_mut() = Current(target);
-            state.carry_out(effects);
-            Ok(())
-        });
+        let reset = entering(name, Box::new(place_after));
         Transfer { source: A::LOCATION, event, target: B::LOCATION, guard: guard.into(), reset }
     }
+}
+
+/// The place that a transition enters, or the location that lacks its data.
+type PlaceAfter<P, S> =
+    dyn Fn(&S, &mut <S as Holds<P>>::Effects) -> Result<P, <P as Place>::Location> + Send + Sync;
+
+/// The reset that enters a place and carries out the effects; it is compiled once for all transitions of an automaton.
+fn entering<P: Place, S: Holds<P> + 'static>(
+    name: &str,
+    place_after: Box<PlaceAfter<P, S>>,
+) -> Reset<S> {
+    Reset::fallible(name, move |state: &mut S| {
+        let mut effects = S::Effects::default();
+        let place = place_after(state, &mut effects);
+        let missing =
+            |location: P::Location| EvaluationError::MissingData { location: location.name() };
+        *state.current_mut() = Current(place.map_err(missing)?);
+        state.carry_out(effects);
+        Ok(())
+    })
 }
 
 /// Declares an enum of [places](Place) and, after the colon, the enum of their locations.

@@ -3,6 +3,7 @@
 #![allow(dead_code)] // not every test needs everything
 
 mod acts;
+mod drawn;
 mod medium;
 
 use crate::floor_plans::in_storms;
@@ -22,6 +23,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, LazyLock, OnceLock};
 
 pub use acts::{Acts, counted};
+pub use drawn::{Drawn, redundant, used};
 pub use medium::{Arrival, AskedTwice, Filtered, Written};
 
 /// What a control period showed.

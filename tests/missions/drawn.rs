@@ -1,0 +1,74 @@
+//! Missions on random floor plans, each run once for all tests.
+
+use super::Acts;
+use crate::floor_plans::{Family, scenario, strategies};
+use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach::automaton::network::scenario::Strategy;
+use pleach::discrete::network::Role;
+use pleach::mission::Watcher;
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::{Arc, Mutex, OnceLock};
+
+/// How a mission on a random floor plan went.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// Family and seed.
+    pub name: String,
+    pub end: End,
+    /// The number of control periods.
+    pub periods: usize,
+    /// What the observers saw last.
+    pub last: Snapshot,
+    pub acts: Acts,
+}
+
+impl Drawn {
+    /// The mission of a family and a seed in this order, with the monitor watching.
+    pub fn new(family: Family, seed: u64, strategy: Strategy) -> Self {
+        let scenario = strategies::following(Some(strategy), scenario(family, seed));
+        let mut ending = Ending::default();
+        let (completed, acts) = Acts::in_mission(&scenario, &mut [&mut ending]);
+        let Ending { periods, last } = ending;
+        let last = last.expect("a mission has a beginning");
+        Drawn { name: scenario.name.clone(), end: completed.end, periods, last, acts }
+    }
+
+    /// The same, from those that have run.
+    pub fn shared(family: Family, seed: u64, strategy: Strategy) -> Arc<Self> {
+        type Missions = BTreeMap<String, Arc<OnceLock<Arc<Drawn>>>>;
+        static MISSIONS: Mutex<Missions> = Mutex::new(BTreeMap::new());
+        let key = format!("{}-{seed} {strategy:?}", family.name());
+        let mission = Arc::clone(MISSIONS.lock().unwrap().entry(key).or_default());
+        Arc::clone(mission.get_or_init(|| Arc::new(Drawn::new(family, seed, strategy))))
+    }
+
+    pub fn is_serviced(&self) -> bool {
+        self.end.outcome == Outcome::Serviced
+    }
+}
+
+/// The last that a mission showed.
+#[derive(Debug, Default)]
+struct Ending {
+    periods: usize,
+    last: Option<Snapshot>,
+}
+
+impl Watcher for Ending {
+    fn observe(&mut self, snapshot: &Snapshot, _: &[MissionEvent]) -> io::Result<()> {
+        self.periods += 1;
+        self.last = Some(snapshot.clone());
+        Ok(())
+    }
+}
+
+/// How many robots of a mission are not needed.
+pub fn redundant(snapshot: &Snapshot) -> usize {
+    snapshot.roles.iter().filter(|&&role| role == Role::Redundant).count()
+}
+
+/// How many are.
+pub fn used(snapshot: &Snapshot) -> usize {
+    snapshot.roles.len() - redundant(snapshot)
+}
