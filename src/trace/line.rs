@@ -9,8 +9,12 @@ use crate::automaton::network::scenario::Scenario;
 use crate::discrete::Location;
 use crate::discrete::network::{Activity, ExchangeStage, Phase, Role};
 use nalgebra::Point2;
-use serde::{Deserialize, Serialize};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value};
 use std::borrow::Cow;
+use std::fmt;
 
 /// A line to be written.
 #[derive(Serialize)]
@@ -33,23 +37,84 @@ pub(super) enum LineOut<'a> {
 }
 
 /// A line that was read.
-#[derive(Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
 pub(super) enum Line {
-    Header {
-        format: String,
-        version: u32,
-        scenario: Box<Scenario>,
-        #[serde(default)]
-        faults: Faults,
-    },
-    Event {
-        k: usize,
-        #[serde(flatten)]
-        event: MissionEvent,
-    },
+    Header(Box<HeaderLine>),
+    Event(EventLine),
     Step(Box<StepLine>),
     End(EndLine),
+}
+
+#[derive(Deserialize)]
+pub(super) struct HeaderLine {
+    pub(super) format: String,
+    pub(super) version: u32,
+    pub(super) scenario: Scenario,
+    #[serde(default)]
+    pub(super) faults: Faults,
+}
+
+#[derive(Deserialize)]
+pub(super) struct EventLine {
+    pub(super) k: usize,
+    #[serde(flatten)]
+    pub(super) event: MissionEvent,
+}
+
+/// What a line is, which it says first.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    Header,
+    Event,
+    Step,
+    End,
+}
+
+impl Line {
+    fn of_kind<'de, D: Deserializer<'de>>(kind: &Kind, rest: D) -> Result<Self, D::Error> {
+        Ok(match kind {
+            Kind::Header => Line::Header(Deserialize::deserialize(rest)?),
+            Kind::Event => Line::Event(Deserialize::deserialize(rest)?),
+            Kind::Step => Line::Step(Deserialize::deserialize(rest)?),
+            Kind::End => Line::End(Deserialize::deserialize(rest)?),
+        })
+    }
+}
+
+/// Where the kind comes first, the rest is read as what it is, without a copy; anywhere else it is looked for.
+impl<'de> Deserialize<'de> for Line {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(AnyLine)
+    }
+}
+
+struct AnyLine;
+
+impl<'de> Visitor<'de> for AnyLine {
+    type Value = Line;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("an object with a `type`")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Line, A::Error> {
+        let mut before = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            if key != "type" {
+                before.insert(key, entries.next_value()?);
+                continue;
+            }
+            let kind = entries.next_value()?;
+            if before.is_empty() {
+                return Line::of_kind(&kind, MapAccessDeserializer::new(entries));
+            }
+            while let Some((key, value)) = entries.next_entry()? {
+                before.insert(key, value);
+            }
+            return Line::of_kind(&kind, Value::Object(before)).map_err(Error::custom);
+        }
+        Err(Error::missing_field("type"))
+    }
 }
 
 /// A [`Snapshot`] in the order and with the names of the format.
@@ -71,8 +136,20 @@ pub(super) struct StepLine {
     path: Vec<usize>,
     serviced: Vec<(usize, usize)>,
     post: Vec<PostLine>,
-    #[serde(flatten)]
-    robots: RobotsLine,
+    /// Of this and the next five there is an element for each robot, as in [`RobotSnapshot`]; traces may lack
+    /// all of them.
+    #[serde(default)]
+    location: Vec<Cow<'static, str>>,
+    #[serde(default)]
+    exchange: Vec<Cow<'static, str>>,
+    #[serde(default)]
+    known_phase: Vec<Cow<'static, str>>,
+    #[serde(default)]
+    target: Vec<Option<[f64; 2]>>,
+    #[serde(default)]
+    sent: Vec<u64>,
+    #[serde(default)]
+    heard: Vec<u64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     closed: Vec<usize>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -92,18 +169,6 @@ struct FleetLine {
     path: Vec<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     ended: Option<usize>,
-}
-
-/// The [`RobotSnapshot`]s, each list with an element for each robot; traces may lack all of them.
-#[derive(Default, Serialize, Deserialize)]
-#[serde(default)]
-struct RobotsLine {
-    location: Vec<Cow<'static, str>>,
-    exchange: Vec<Cow<'static, str>>,
-    known_phase: Vec<Cow<'static, str>>,
-    target: Vec<Option<[f64; 2]>>,
-    sent: Vec<u64>,
-    heard: Vec<u64>,
 }
 
 /// A [`PostView`] with the names of the format.
@@ -139,6 +204,7 @@ struct FleetEndLine {
 
 impl From<&Snapshot> for StepLine {
     fn from(snapshot: &Snapshot) -> Self {
+        let robots = &snapshot.robots;
         Self {
             k: snapshot.step,
             t: snapshot.time,
@@ -158,7 +224,12 @@ impl From<&Snapshot> for StepLine {
             path: snapshot.path.clone(),
             serviced: snapshot.serviced.clone(),
             post: snapshot.posts.iter().map(PostLine::from).collect(),
-            robots: RobotsLine::from(&*snapshot.robots),
+            location: robots.iter().map(|robot| robot.activity.name().into()).collect(),
+            exchange: robots.iter().map(|robot| robot.exchange.name().into()).collect(),
+            known_phase: robots.iter().map(|robot| robot.phase.name().into()).collect(),
+            target: robots.iter().map(|robot| robot.target.map(|target| target.into())).collect(),
+            sent: robots.iter().map(|robot| robot.sent).collect(),
+            heard: robots.iter().map(|robot| robot.heard).collect(),
             closed: snapshot.closed.clone(),
             absent: snapshot.absent.clone(),
             fleets: snapshot.fleets.iter().map(FleetLine::from).collect(),
@@ -178,6 +249,7 @@ impl TryFrom<StepLine> for Snapshot {
         ] {
             fitting(name, length, robots)?;
         }
+        let views = line.views(robots)?;
         Ok(Self {
             step: line.k,
             time: line.t,
@@ -201,7 +273,7 @@ impl TryFrom<StepLine> for Snapshot {
             task: line.task,
             serviced: line.serviced,
             posts: line.post.into_iter().map(PostView::from).collect(),
-            robots: line.robots.views(robots)?,
+            robots: views,
             closed: line.closed,
             absent: line.absent,
             fleets: line.fleets.into_iter().map(FleetView::try_from).collect::<Result<_, _>>()?,
@@ -209,22 +281,9 @@ impl TryFrom<StepLine> for Snapshot {
     }
 }
 
-impl From<&[RobotSnapshot]> for RobotsLine {
-    fn from(robots: &[RobotSnapshot]) -> Self {
-        Self {
-            location: robots.iter().map(|robot| robot.activity.name().into()).collect(),
-            exchange: robots.iter().map(|robot| robot.exchange.name().into()).collect(),
-            known_phase: robots.iter().map(|robot| robot.phase.name().into()).collect(),
-            target: robots.iter().map(|robot| robot.target.map(|target| target.into())).collect(),
-            sent: robots.iter().map(|robot| robot.sent).collect(),
-            heard: robots.iter().map(|robot| robot.heard).collect(),
-        }
-    }
-}
-
-impl RobotsLine {
+impl StepLine {
     /// The views of this many robots, or none where the trace has none.
-    fn views(self, robots: usize) -> Result<Vec<RobotSnapshot>, String> {
+    fn views(&self, robots: usize) -> Result<Vec<RobotSnapshot>, String> {
         let lengths = [
             ("location", self.location.len()),
             ("exchange", self.exchange.len()),
