@@ -1,7 +1,10 @@
 //! The breadth-first visit of all states.
 
-use std::collections::BTreeMap;
 use std::fmt::Debug;
+use std::hash::Hash;
+
+use indexmap::IndexSet;
+use rustc_hash::FxBuildHasher;
 
 /// A discrete system: where it starts, and what may happen in each of its states.
 ///
@@ -9,7 +12,7 @@ use std::fmt::Debug;
 /// must not depend on that.
 pub trait Model {
     /// A state; equal states have equal futures.
-    type State: Clone + Ord;
+    type State: Clone + Eq + Hash;
     /// What happens, by name.
     type Action: Copy + Ord + Debug;
     /// Why the model cannot say what happens.
@@ -100,12 +103,12 @@ const BEYOND_A_VIOLATION: usize = 50_000;
 /// # Errors
 /// When there are more states than `limit`, or the model cannot say what happens.
 pub fn explore<M: Model>(model: &mut M, properties: &[Property<M>], limit: usize) -> Explored<M> {
-    let mut visit = Visit { known: BTreeMap::new(), states: Vec::new(), origins: Vec::new() };
+    let mut visit = Visit { states: IndexSet::default(), origins: Vec::new() };
     for state in model.initial().map_err(ExplorationError::Model)? {
         visit.meet(model.representative(state), None);
     }
     let (mut begins, mut transitions, mut violations) = (vec![0], Vec::new(), Vec::new());
-    while let Some(state) = visit.states.get(begins.len() - 1).cloned() {
+    while let Some(state) = visit.states.get_index(begins.len() - 1).cloned() {
         let id = (begins.len() - 1) as StateId;
         for property in properties {
             let known = violations.iter().any(|v: &Violation| v.property == property.name);
@@ -129,25 +132,23 @@ pub fn explore<M: Model>(model: &mut M, properties: &[Property<M>], limit: usize
     let Visit { states, origins, .. } = visit;
     let is_complete = begins.len() > states.len();
     begins.resize(states.len() + 1, transitions.len());
+    let states = states.into_iter().collect();
     Ok(StateGraph { states, origins, begins, transitions, violations, is_complete })
 }
 
 struct Visit<S, A> {
-    known: BTreeMap<S, StateId>,
-    states: Vec<S>,
+    /// In the order in which they are met.
+    states: IndexSet<S, FxBuildHasher>,
     origins: Vec<Option<(StateId, A)>>,
 }
 
-impl<S: Clone + Ord, A> Visit<S, A> {
+impl<S: Eq + Hash, A> Visit<S, A> {
     fn meet(&mut self, state: S, origin: Option<(StateId, A)>) -> StateId {
-        if let Some(&id) = self.known.get(&state) {
-            return id;
+        let (id, is_new) = self.states.insert_full(state);
+        if is_new {
+            self.origins.push(origin);
         }
-        let id = self.states.len() as StateId;
-        self.known.insert(state.clone(), id);
-        self.states.push(state);
-        self.origins.push(origin);
-        id
+        id as StateId
     }
 }
 

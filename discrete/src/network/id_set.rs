@@ -7,7 +7,8 @@ mod proofs;
 ///
 /// The numbers below 64 have a machine word of their own, so that the sets of most networks allocate
 /// nothing.
-#[derive(Clone, Debug, Default, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, Default, Eq, PartialOrd, Ord, Hash)]
+#[allow(clippy::derived_hash_with_manual_eq)] // sets are equal where all their words are
 pub struct IdSet {
     first: u64,
     /// From 64 on, ascending.
@@ -15,7 +16,7 @@ pub struct IdSet {
 }
 
 /// The numbers from `WIDTH · at` on: at least one of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 struct Word {
     at: usize,
     bits: u64,

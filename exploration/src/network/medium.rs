@@ -37,7 +37,7 @@ pub enum Medium {
 }
 
 /// How many messages and robots may fail in a mission.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Faults {
     /// Messages that do not arrive.
     pub losses: u32,
@@ -68,7 +68,7 @@ impl Faults {
 pub const LONGEST_ECHO: u8 = 3;
 
 /// A copy that is on its way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Copied {
     from: NodeId,
     to: NodeId,

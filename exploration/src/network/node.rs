@@ -1,6 +1,5 @@
 //! Nodes as the explorer handles them: one robot or access point, and what it has heard.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Index;
 use std::sync::Arc;
@@ -11,6 +10,7 @@ use pleach_automaton::network::roll::Roll;
 use pleach_automaton::network::{AccessPoint, Message, Robot, RobotView, Sense};
 use pleach_automaton::node::{Input, Node as _, Observed, Outputs};
 use pleach_continuous::Point;
+use rustc_hash::FxHashMap;
 
 /// The number of a beacon among all those ever sent.
 pub type BeaconId = u32;
@@ -112,7 +112,7 @@ impl Node {
 }
 
 /// The number of a text among those met, in the order in which they were.
-fn number_in(numbers: &mut BTreeMap<String, u32>, text: String) -> u32 {
+fn number_in(numbers: &mut FxHashMap<String, u32>, text: String) -> u32 {
     let next = numbers.len() as u32;
     *numbers.entry(text).or_insert(next)
 }
@@ -121,12 +121,12 @@ fn number_in(numbers: &mut BTreeMap<String, u32>, text: String) -> u32 {
 #[derive(Debug)]
 struct Numbered<T> {
     things: Vec<T>,
-    numbers: BTreeMap<String, u32>,
+    numbers: FxHashMap<String, u32>,
 }
 
 impl<T: fmt::Debug> Numbered<T> {
-    const fn new() -> Self {
-        Numbered { things: Vec::new(), numbers: BTreeMap::new() }
+    fn new() -> Self {
+        Numbered { things: Vec::new(), numbers: FxHashMap::default() }
     }
 
     /// The number of a thing.
@@ -176,7 +176,7 @@ impl Local {
 }
 
 /// Something that happens to one node.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Stimulus {
     /// It receives these messages, and processes them, before its clock ticks.
     Hear(Vec<MessageId>),
@@ -212,9 +212,9 @@ pub struct Nodes {
     messages: Numbered<Said>,
     locals: Vec<Local>,
     /// By the paragraphs of its account and the beacons heard: few texts, in many combinations.
-    local_ids: BTreeMap<Box<[u32]>, LocalId>,
-    paragraphs: BTreeMap<String, u32>,
-    outcomes: BTreeMap<(LocalId, Stimulus), LocalId>,
+    local_ids: FxHashMap<Box<[u32]>, LocalId>,
+    paragraphs: FxHashMap<String, u32>,
+    outcomes: FxHashMap<(LocalId, Stimulus), LocalId>,
 }
 
 impl Nodes {
@@ -226,9 +226,9 @@ impl Nodes {
             beacons: Numbered::new(),
             messages: Numbered::new(),
             locals: Vec::new(),
-            local_ids: BTreeMap::new(),
-            paragraphs: BTreeMap::new(),
-            outcomes: BTreeMap::new(),
+            local_ids: FxHashMap::default(),
+            paragraphs: FxHashMap::default(),
+            outcomes: FxHashMap::default(),
         }
     }
 

@@ -133,7 +133,7 @@ impl fmt::Display for Action {
 
 /// The state of the network: the state of every node, and what the medium and the bodies may
 /// still do. Its nodes are those of the [`Protocol`] that made it.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct State {
     /// Robots first, then access points.
     pub locals: Arc<[LocalId]>,
