@@ -183,7 +183,7 @@ impl Robot {
         let validity = self.site.roll_validity();
         self.roll.called = numbers.of(self.roll.called, validity + 1);
         self.confirmation = self.confirmation.renumbered(|it| numbers.of(it, OLDEST_CONFIRMATION));
-        for known in &mut self.neighbours {
+        for known in self.neighbours.iter_mut() {
             known.heard_in = numbers.of(known.heard_in, PATIENCE_WITH_CHILDREN + 1);
             known.confirmed = known.confirmed.map(|it| numbers.of(it, OLDEST_CONFIRMATION));
         }

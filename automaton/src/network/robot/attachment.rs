@@ -300,7 +300,7 @@ impl Robot {
         admits: &dyn Fn(&Neighbour) -> bool,
     ) -> Option<(usize, Anchor)> {
         let mut best: Option<(usize, f64, Anchor)> = None;
-        for neighbour in &self.neighbours {
+        for neighbour in self.neighbours.iter() {
             let Some(lineage) = &neighbour.beacon.lineage else { continue };
             let hops = lineage.hops();
             let better = best.is_none_or(|(fewest, reliability, _)| {

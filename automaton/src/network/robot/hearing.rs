@@ -201,7 +201,7 @@ impl Robot {
 
     #[inline(never)]
     fn hear_news(&mut self, period: u32, confirmed: Option<u32>, beacon: &Arc<Beacon>) {
-        let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
+        let known = self.neighbours.place_of(beacon.sender);
         match known {
             Ok(at) => self.renew(at, period, confirmed, beacon),
             Err(at) => {
@@ -220,7 +220,7 @@ impl Robot {
     /// A neighbour that the robot knows is heard again. What it has passed on counts for the post that it
     /// holds in the same message.
     fn renew(&mut self, at: usize, period: u32, confirmed: Option<u32>, beacon: &Arc<Beacon>) {
-        let known = &mut self.neighbours[at];
+        let Some(known) = self.neighbours.get_mut(at) else { return };
         let is_same = Arc::ptr_eq(&known.beacon, beacon);
         if !is_same && beacon.is_older_than(&known.beacon) {
             return;
@@ -229,9 +229,12 @@ impl Robot {
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
         if (known.measured_at, known.position()) != (self.position, beacon.position) {
-            *known = Neighbour::new(beacon, confirmed, period, self.position, &self.site);
+            let moved = Neighbour::new(beacon, confirmed, period, self.position, &self.site);
+            self.neighbours.replace(at, moved);
         } else if !is_same {
-            (known.beacon, known.confirmed) = (Arc::clone(beacon), confirmed);
+            let beacon = Arc::clone(beacon);
+            let renewed = Neighbour { beacon, confirmed, ..known.clone() };
+            self.neighbours.replace(at, renewed);
         } else {
             known.confirmed = confirmed;
             self.has_news |= is_back || self.awaits_confirmation && is_newer;
@@ -250,8 +253,8 @@ impl Robot {
         let counts_silence = self.round_count.count() <= ROUNDS_TO_BE_HEARD;
         let mut at = 0;
         let mut hears_all = true;
-        while at < self.neighbours.len() {
-            let is_heard = std::mem::take(&mut self.neighbours[at].is_heard);
+        while let Some(known) = self.neighbours.get_mut(at) {
+            let is_heard = std::mem::take(&mut known.is_heard);
             hears_all &= is_heard;
             at = if is_heard || !counts_silence { at + 1 } else { self.miss(at) };
         }
@@ -267,7 +270,7 @@ impl Robot {
     /// because its messages are lost. A robot that is gone is not waited for, once no packets flow to it.
     fn miss(&mut self, at: usize) -> usize {
         let (own, period) = (self.duty.post().map(|post| post.id), self.period);
-        let known = &mut self.neighbours[at];
+        let Some(known) = self.neighbours.get_mut(at) else { return at };
         let (was_silent, was_heard) = (known.is_silent(), known.was_heard());
         let has_moved = known.measured_at != self.position;
         let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
@@ -338,8 +341,7 @@ impl Robot {
     }
 
     pub(super) fn neighbour(&self, id: NodeId) -> Option<&Neighbour> {
-        let at = self.neighbours.binary_search_by_key(&id, Neighbour::id).ok()?;
-        Some(&self.neighbours[at])
+        self.neighbours.get(self.neighbours.place_of(id).ok()?)
     }
 
     /// The neighbour that holds `post`.
@@ -347,8 +349,7 @@ impl Robot {
     /// At the end of an exchange of duties two robots hold it, and the one whose reply stands is
     /// about to take the other's: a robot that was still attached to it could end up below itself.
     pub(super) fn holder(&self, post: PostId) -> Option<&Neighbour> {
-        let holds = |neighbour: &&Neighbour| neighbour.post().is_some_and(|held| held.id == post);
-        let holders = self.neighbours.iter().filter(holds);
+        let holders = self.neighbours.holders(post);
         holders.min_by_key(|neighbour| neighbour.beacon.reply.is_some())
     }
 

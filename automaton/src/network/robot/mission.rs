@@ -126,7 +126,7 @@ impl Robot {
     /// Merges what it knows of the mission with the beacons of its neighbours.
     pub(super) fn hear_notices(&mut self) {
         self.longest_wait = self.longest_wait();
-        for neighbour in &self.neighbours {
+        for neighbour in self.neighbours.iter() {
             let told = neighbour.beacon.longest_wait;
             self.longest_wait = self.site.longer_wait(self.longest_wait, told);
             self.stretched |= neighbour.beacon.stretched;

@@ -29,6 +29,7 @@ mod links;
 mod mission;
 mod motion;
 mod negotiation;
+mod neighbours;
 mod partner;
 mod path;
 mod recruit;
@@ -92,9 +93,9 @@ use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use bodies::Bodies;
 use duties::Label;
-use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
+use neighbours::Neighbours;
 use partner::Answered;
 use reservation::{HeldFlow, Reservation};
 use rounds::Rounds;
@@ -112,7 +113,7 @@ pub struct Robot {
     // its neighbours is expected to be heard next.
     /// x.
     position: Point,
-    neighbours: Vec<Neighbour>,
+    neighbours: Neighbours,
     /// The newest roll that it knows.
     roll: Roll,
     /// How many control periods have begun.
@@ -332,7 +333,7 @@ impl Robot {
             taking_over: None,
             past_partners: None,
             answered: BTreeMap::new(),
-            neighbours: Vec::new(),
+            neighbours: Neighbours::default(),
             period: 0,
             roll: Roll::default(),
             out_of_sight: Sightings::default(),

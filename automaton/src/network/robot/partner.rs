@@ -75,7 +75,7 @@ impl Robot {
         let own_way = self.site.distance(self.position, goal);
         let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
-        for neighbour in &self.neighbours {
+        for neighbour in self.neighbours.iter() {
             if neighbour.distance <= contact * self.clearance() && self.could_replace(neighbour) {
                 let way = self.site.distance(neighbour.position(), goal);
                 let is_return = match self.exchanges_with(neighbour.id()) {

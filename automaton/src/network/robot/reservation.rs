@@ -417,9 +417,11 @@ impl Robot {
                 // There is no room for more in this period.
                 held.wanted = held.flow;
             }
-            let is_due = std::mem::take(&mut held.is_due) || held.can_be_given_back();
-            if is_due && held.to < self.site.robots {
-                self.ask(at, outputs);
+            if held.is_due || held.can_be_given_back() {
+                held.is_due = false;
+                if held.to < self.site.robots {
+                    self.ask(at, outputs);
+                }
             }
         }
         if self.reservations.iter().any(Reservation::is_unmet) {
@@ -577,7 +579,10 @@ impl Robot {
     pub(super) fn adopt_flows(&mut self) {
         let mut flows = self.flows.iter().peekable();
         for link in &mut self.links {
-            link.share = flows.next_if(|held| held.to == link.to).map_or(0.0, HeldFlow::load);
+            let share = flows.next_if(|held| held.to == link.to).map_or(0.0, HeldFlow::load);
+            if link.share != share {
+                link.share = share;
+            }
         }
         let granted = self.reservations.iter().map(|kept| (kept.from, kept.lease.flow()));
         self.inflows.clear();

@@ -96,22 +96,25 @@ impl Robot {
     pub(super) fn survey_links(&mut self) {
         (self.has_no_reserve, self.has_shortage_news) = (false, false);
         (self.has_untold_flows, self.is_unsettled) = (true, true);
-        let links = Vec::with_capacity(self.neighbours.len());
-        let old = std::mem::replace(&mut self.links, links);
         let tree = self.tree_links();
+        let mut links = std::mem::take(&mut self.links);
+        let mut at = 0;
         let aversion = self.site.settings.slope_aversion;
-        for neighbour in &self.neighbours {
+        for neighbour in self.neighbours.iter() {
             let to = neighbour.id();
             let reliability = neighbour.reliability;
             let in_tree = tree.iter().any(|link| link.to == to);
-            let known = link_at(&old, to).map(|at| &old[at]);
+            while links.get(at).is_some_and(|link| link.to < to) {
+                links.remove(at);
+            }
+            let known = links.get(at).filter(|link| link.to == to).copied();
             let at_worst = self.site.link.reliability(neighbour.distance + 2.0 * self.stray());
             let is_retiring = at_worst < LEAST_USEFUL_RELIABILITY && !in_tree;
             if is_retiring && !self.sends_to(to) || reliability <= 0.0 {
                 continue;
             }
             let iterate = known.filter(|_| !is_retiring).map_or(0.0, |link| link.iterate);
-            self.links.push(RouteLink {
+            let link = RouteLink {
                 to,
                 reliability,
                 weight: weight(aversion, &self.site.link, neighbour.distance),
@@ -120,8 +123,17 @@ impl Robot {
                 iterate,
                 told: 0.0,
                 is_retiring,
-            });
+            };
+            match known {
+                // Most are as before, and what is not written is not copied between memory and cache.
+                Some(before) if before == link => {}
+                Some(_) => links[at] = link,
+                None => links.insert(at, link),
+            }
+            at += 1;
         }
+        links.truncate(at);
+        self.links = links;
         self.drop_flows_without_link();
         self.expected_link = 0;
         self.dual_step_size = self.safe_dual_step();
@@ -172,9 +184,12 @@ impl Robot {
         report: NeighbourReport,
         parent: Option<NodeId>,
     ) {
-        let link = self.link_to(from);
-        let is_new = link.is_some_and(|link| link.report.replace(report) != Some(report));
-        self.has_new_multipliers |= is_new;
+        if let Some(link) = self.link_to(from)
+            && link.report != Some(report)
+        {
+            link.report = Some(report);
+            self.has_new_multipliers = true;
+        }
         if parent == Some(self.id)
             && let Err(at) = self.demands.binary_search_by_key(&from, |&(child, _)| child)
         {

@@ -146,7 +146,7 @@ impl Robot {
     /// The robot finds that it stands at `position`, and how far its neighbours are from there.
     fn find_itself_at(&mut self, position: Point) {
         self.stand_at(position, 0);
-        for known in &mut self.neighbours {
+        for known in self.neighbours.iter_mut() {
             *known = known.seen_from(position, &self.site);
         }
     }

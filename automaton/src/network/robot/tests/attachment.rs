@@ -575,12 +575,12 @@ fn a_robot_that_is_gone_and_does_not_hear_its_parent_forgets_the_way() {
     let gone = Absent { gone: IdSet::singleton(robot.id), ..Absent::default() };
     robot.roll = Roll { called: NOW, absent: Arc::new(gone) };
     assert!(knows_way(&mut robot), "it hears its parent");
-    robot.neighbours.clear();
+    robot.neighbours = Neighbours::default();
     assert!(!knows_way(&mut robot));
     robot.roll.absent = Arc::default();
     robot.hears(parent);
     assert!(knows_way(&mut robot));
-    robot.neighbours.clear();
+    robot.neighbours = Neighbours::default();
     assert!(knows_way(&mut robot), "it takes part");
 }
 

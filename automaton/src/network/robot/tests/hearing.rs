@@ -234,7 +234,7 @@ fn a_robot_moves_only_if_it_has_heard_all_that_are_near_in_this_period() {
     assert!(!robot.may_leave_place(), "one nearby has not been heard since");
     robot.hears(beacon(2, east(near - 0.01), redundant(12, 13), &[]));
     robot.period += robot.site.roll_validity();
-    robot.neighbours.clear();
+    robot.neighbours = Neighbours::default();
     assert!(!robot.may_leave_place(), "the roll is not valid any more");
 }
 

@@ -38,7 +38,7 @@ fn the_first_of_the_team_is_followed_by_nobody() {
     robot.hears(beacon(2, west(0.5), primary(32, Some(30), 13), &[32, 13]));
     assert!(!robot.is_first());
     robot.note_follower();
-    robot.neighbours.clear();
+    robot.neighbours = Neighbours::default();
     robot.note_follower();
     assert!(!robot.is_first(), "one that falls silent follows all the same");
     robot.holds(primary(33, None, 13));
@@ -288,7 +288,7 @@ fn a_parent_that_is_not_heard_is_the_one_before() {
     assert_eq!(robot.tree_parent(), Some(1), "another robot may have taken post 11 in an exchange");
     robot.orphaned_periods = 4;
     assert_eq!(robot.tree_parent(), None, "it has begun again");
-    robot.neighbours.clear();
+    robot.neighbours = Neighbours::default();
     assert_eq!(robot.tree_parent(), None, "it is not heard");
     robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) });
     assert_eq!(robot.tree_parent(), Some(ROBOTS));

@@ -109,7 +109,7 @@ fn where_branches_are_is_known_two_links_away() {
     robot.hears(told);
     let gone = [3, 5].into_iter().collect();
     robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
-    robot.neighbours.clear();
+    robot.neighbours = Neighbours::default();
     robot.locate_wrecks();
     let start = robot.site.start_of(5).expect("there is such a robot");
     let (branch, unheard) = (Wreck::heard(3, east(1.5), NOW - 2), Wreck::heard(5, start, 0));
