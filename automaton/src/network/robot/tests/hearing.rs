@@ -401,3 +401,17 @@ fn children_are_those_whose_posts_are_attached_to_the_post_of_this_robot() {
     assert_eq!(robot.children().map(|it| it.id()).collect::<Vec<_>>(), [1]);
     assert_eq!(robot.children_of(PostId(11)).map(|it| it.id()).collect::<Vec<_>>(), [2]);
 }
+
+#[test]
+fn a_neighbour_is_found_by_the_post_that_it_holds_now() {
+    let mut robot = robot();
+    let found = |robot: &Robot| {
+        [11, 14, 15].map(|post| robot.holder(PostId(post)).map(|holder| holder.id()))
+    };
+    robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
+    assert_eq!(found(&robot), [Some(1), None, None]);
+    robot.hears(beacon(1, east(0.2), redundant(14, 12), &[]));
+    assert_eq!(found(&robot), [None, Some(1), None]);
+    robot.hears(beacon(1, east(0.3), redundant(15, 12), &[]));
+    assert_eq!(found(&robot), [None, None, Some(1)]);
+}

@@ -25,6 +25,7 @@ use pleach_discrete::network::{Anchor, Lineage, NodeId, Phase, Post, PostId, Pos
 use serde_json::json;
 
 use super::Robot;
+use super::neighbours::Neighbours;
 use crate::located::Current;
 use crate::network::beacon::{Announcement, Beacon, Notice};
 use crate::network::duty::{
