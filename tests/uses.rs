@@ -81,6 +81,12 @@ pub const USES: &[Use] = &[
         "!is_acceptable(worst, self.load() + ROUNDING)",
     ),
     ("is_admitted", MOTION, MOTION, "is_admitted(self.smallest_margin(point))"),
+    (
+        "replace",
+        "automaton/src/network/robot/neighbours.rs",
+        "automaton/src/network/robot/hearing.rs",
+        "self.neighbours.replace(at, renewed);",
+    ),
     ("smallest", MOTION, MOTION, "smallest(lines.chain(circles))"),
     (
         "reliability",
