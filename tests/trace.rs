@@ -44,6 +44,20 @@ fn what_is_read_is_what_was_written() {
     assert_eq!(entries, expected);
 }
 
+/// Other programs may write the keys of an object in the order of the alphabet.
+#[test]
+fn keys_may_come_in_any_order() {
+    let text = written();
+    let sorted = |line: &str| serde_json::from_str::<serde_json::Value>(line).unwrap().to_string();
+    let other: Vec<String> = text.lines().map(sorted).collect();
+    let [read, again] = [text, other.join("\n")].map(|text| {
+        let reader = TraceReader::new(text.as_bytes()).unwrap();
+        (reader.scenario().clone(), reader.collect::<Result<Vec<_>, _>>().unwrap())
+    });
+    assert!(!other.iter().any(|line| line.starts_with("{\"type\"")));
+    assert_eq!(read, again);
+}
+
 /// Traces of older builds do not say where robots are in their automata.
 #[test]
 fn a_trace_without_views_of_robots_is_read() {
