@@ -29,7 +29,7 @@ mod line;
 use crate::automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use crate::automaton::network::scenario::{Scenario, Strategy};
 use crate::mission::Watcher;
-use line::{EndLine, EventLine, HeaderLine, Line, LineOut, StepLine};
+use line::{EndLine, Line, LineOut, StepLine};
 use serde_json::{Map, Value};
 use std::io::{self, BufRead, Write};
 use thiserror::Error;
@@ -131,12 +131,11 @@ impl<R: BufRead> TraceReader<R> {
     pub fn new(mut input: R) -> Result<Self, TraceError> {
         let first = WrittenLine::read(&mut input, 1)?.ok_or(TraceError::Empty)?;
         match first.parse()? {
-            Line::Header(header) => {
-                let HeaderLine { format, version, scenario, faults } = *header;
-                if format != FORMAT || version != VERSION {
-                    return Err(TraceError::OtherFormat { format, version });
-                }
-                Ok(Self { scenario: as_traced(scenario), faults, input, number: 1 })
+            Line::Header { format, version, .. } if format != FORMAT || version != VERSION => {
+                Err(TraceError::OtherFormat { format, version })
+            }
+            Line::Header { scenario, faults, .. } => {
+                Ok(Self { scenario: as_traced(*scenario), faults, input, number: 1 })
             }
             _ => Err(TraceError::Misplaced { line: 1, wanted: "the header" }),
         }
@@ -172,12 +171,12 @@ impl<R: BufRead> Iterator for TraceReader<R> {
 /// What a line after the header says.
 fn entry(number: usize, line: Line) -> Result<TraceEntry, TraceError> {
     match line {
-        Line::Event(EventLine { k, event }) => Ok(TraceEntry::Event { step: k, event }),
+        Line::Event { k, event } => Ok(TraceEntry::Event { step: k, event }),
         Line::Step(step) => (Snapshot::try_from(*step))
             .map(|snapshot| TraceEntry::Step(Box::new(snapshot)))
             .map_err(|wrong| TraceError::Uneven { line: number, wrong }),
         Line::End(end) => Ok(TraceEntry::End(end.into())),
-        Line::Header(_) => {
+        Line::Header { .. } => {
             Err(TraceError::Misplaced { line: number, wanted: "a step, event or end" })
         }
     }
@@ -215,7 +214,7 @@ impl WrittenLine {
 
     fn parse(&self) -> Result<Line, TraceError> {
         let text = self.text.strip_suffix(b"\n").unwrap_or(&self.text);
-        serde_json::from_slice(text).map_err(|source| match self.number {
+        Line::read(text).map_err(|source| match self.number {
             1 if !source.is_eof() => TraceError::NotATrace { source },
             line => TraceError::NotALine { line, source },
         })

@@ -4,13 +4,13 @@
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it coverage` writes the page anew, after
 //! `PLEACH_UPDATE_DOCS=1 cargo test -p pleach-exploration --test it campaigns` has written what is explored.
 
-use crate::floor_plans::Family;
+use crate::floor_plans::{Family, strategies};
 use crate::generated::{keep_up_to_date, read};
 use crate::missions::{Acts, Drawn, counted, shipped, shipped_mission, shipped_names, valid};
 use crate::stressed::stressed_scenarios;
 use pleach::automaton::Executor;
 use pleach::automaton::network::NamedRow;
-use pleach::automaton::network::scenario::{RoutingMethod, Strategy};
+use pleach::automaton::network::scenario::RoutingMethod;
 use pleach::verify::network::storm::{Kind, draw, network_on};
 use pleach_exploration::network::QUICK;
 use rayon::prelude::*;
@@ -19,7 +19,6 @@ use std::sync::Arc;
 
 /// Random missions of each family by each strategy.
 const SEEDS: u64 = 2;
-const STRATEGIES: [Strategy; 2] = [Strategy::Paper, Strategy::Eager];
 
 /// Why rows are there that none of these takes, by what their names contain: table, source, event,
 /// target.
@@ -83,7 +82,7 @@ fn in_shipped() -> Acts {
 /// What acts in random missions, which other tests look at as well, by either strategy.
 fn in_random() -> Acts {
     let of_family =
-        |family| (1..=SEEDS).flat_map(move |seed| STRATEGIES.map(|it| (family, seed, it)));
+        |family| (1..=SEEDS).flat_map(move |seed| strategies::BOTH.map(|it| (family, seed, it)));
     let families = Family::of_every_day().chain(Family::WINDING);
     let missions: Vec<_> = families.flat_map(of_family).collect();
     let in_each = missions

@@ -18,7 +18,7 @@ const PERIODS_IN_STORMS: usize = 1_500;
 
 /// The same mission by either strategy: the paper's, and the eager one.
 fn both(scenario: &Scenario) -> [Mission; 2] {
-    [Strategy::Paper, Strategy::Eager].map(|strategy| run_by(strategy, scenario.clone()))
+    strategies::BOTH.map(|strategy| run_by(strategy, scenario.clone()))
 }
 
 /// In how many periods the primary team moves although it is not the active one.
@@ -82,12 +82,12 @@ fn random_missions_are_serviced_alike_and_sooner() {
     let outcomes: Vec<_> = missions
         .into_par_iter()
         .map(|(family, seed)| {
-            let [paper, eager] = [Strategy::Paper, Strategy::Eager]
-                .map(|strategy| Drawn::shared(family, seed, strategy));
+            let [paper, eager] =
+                strategies::BOTH.map(|strategy| Drawn::shared(family, seed, strategy));
             let said = format!("{}: {}", eager.name, eager.end.reason);
             assert!(!paper.is_serviced() || eager.is_serviced(), "{said}");
             assert!(!eager.is_serviced() || !has_idle_node(&eager.last), "{said}");
-            let ratio = |of: &dyn Fn(&Drawn) -> usize| of(&eager) as f64 / of(&paper) as f64;
+            let ratio = |of: &dyn Fn(&Drawn) -> usize| of(eager) as f64 / of(paper) as f64;
             (ratio(&|it| it.periods), ratio(&|it| used(&it.last)))
         })
         .collect();

@@ -58,6 +58,17 @@ fn keys_may_come_in_any_order() {
     assert_eq!(read, again);
 }
 
+#[test]
+fn a_line_has_one_type() {
+    for twice in [r#"{"type":"step","k":0,"type":"end"}"#, r#"{"k":0,"type":"step","type":"end"}"#]
+    {
+        let text = written();
+        let text = format!("{}\n{twice}\n", text.lines().next().unwrap());
+        let wrong = TraceReader::new(text.as_bytes()).unwrap().next().unwrap().unwrap_err();
+        assert!(wrong.to_string().contains("duplicate field `type`"), "{wrong}");
+    }
+}
+
 /// Traces of older builds do not say where robots are in their automata.
 #[test]
 fn a_trace_without_views_of_robots_is_read() {

@@ -9,12 +9,8 @@ use crate::automaton::network::scenario::Scenario;
 use crate::discrete::Location;
 use crate::discrete::network::{Activity, ExchangeStage, Phase, Role};
 use nalgebra::Point2;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Error, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::{Map, Value};
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::fmt;
 
 /// A line to be written.
 #[derive(Serialize)]
@@ -37,89 +33,45 @@ pub(super) enum LineOut<'a> {
 }
 
 /// A line that was read.
+#[derive(Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
 pub(super) enum Line {
-    Header(Box<HeaderLine>),
-    Event(EventLine),
+    Header {
+        format: String,
+        version: u32,
+        scenario: Box<Scenario>,
+        #[serde(default)]
+        faults: Faults,
+    },
+    Event {
+        k: usize,
+        #[serde(flatten)]
+        event: MissionEvent,
+    },
     Step(Box<StepLine>),
     End(EndLine),
 }
 
-#[derive(Deserialize)]
-pub(super) struct HeaderLine {
-    pub(super) format: String,
-    pub(super) version: u32,
-    pub(super) scenario: Scenario,
-    #[serde(default)]
-    pub(super) faults: Faults,
-}
-
-#[derive(Deserialize)]
-pub(super) struct EventLine {
-    pub(super) k: usize,
-    #[serde(flatten)]
-    pub(super) event: MissionEvent,
-}
-
-/// What a line is, which it says first.
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Kind {
-    Header,
-    Event,
-    Step,
-    End,
-}
+/// How a step begins as it is written.
+const STEP: &[u8] = br#"{"type":"step","#;
 
 impl Line {
-    fn of_kind<'de, D: Deserializer<'de>>(kind: &Kind, rest: D) -> Result<Self, D::Error> {
-        Ok(match kind {
-            Kind::Header => Line::Header(Deserialize::deserialize(rest)?),
-            Kind::Event => Line::Event(Deserialize::deserialize(rest)?),
-            Kind::Step => Line::Step(Deserialize::deserialize(rest)?),
-            Kind::End => Line::End(Deserialize::deserialize(rest)?),
-        })
-    }
-}
-
-/// Where the kind comes first, the rest is read as what it is, without a copy; anywhere else it is looked for.
-impl<'de> Deserialize<'de> for Line {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(AnyLine)
-    }
-}
-
-struct AnyLine;
-
-impl<'de> Visitor<'de> for AnyLine {
-    type Value = Line;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("an object with a `type`")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Line, A::Error> {
-        let mut before = Map::new();
-        while let Some(key) = entries.next_key::<String>()? {
-            if key != "type" {
-                before.insert(key, entries.next_value()?);
-                continue;
-            }
-            let kind = entries.next_value()?;
-            if before.is_empty() {
-                return Line::of_kind(&kind, MapAccessDeserializer::new(entries));
-            }
-            while let Some((key, value)) = entries.next_entry()? {
-                before.insert(key, value);
-            }
-            return Line::of_kind(&kind, Value::Object(before)).map_err(Error::custom);
+    /// Reads a line. Nearly all are steps; read as such where they begin so, they need no copy of each value, which
+    /// it takes to look for the type first.
+    pub(super) fn read(text: &[u8]) -> serde_json::Result<Self> {
+        match text.starts_with(STEP) {
+            true => serde_json::from_slice(text).map(Line::Step),
+            false => serde_json::from_slice(text),
         }
-        Err(Error::missing_field("type"))
     }
 }
 
 /// A [`Snapshot`] in the order and with the names of the format.
 #[derive(Serialize, Deserialize)]
 pub(super) struct StepLine {
+    /// Read here only so that a second one is refused; the lines that are written have their type from [`LineOut`].
+    #[serde(rename = "type", default, skip_serializing)]
+    _kind: StepKind,
     k: usize,
     t: f64,
     position: Vec<[f64; 2]>,
@@ -156,6 +108,13 @@ pub(super) struct StepLine {
     absent: Vec<usize>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     fleets: Vec<FleetLine>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum StepKind {
+    #[default]
+    Step,
 }
 
 /// A [`FleetView`] with the names of the format.
@@ -206,6 +165,7 @@ impl From<&Snapshot> for StepLine {
     fn from(snapshot: &Snapshot) -> Self {
         let robots = &snapshot.robots;
         Self {
+            _kind: StepKind::Step,
             k: snapshot.step,
             t: snapshot.time,
             position: snapshot.positions.iter().map(|point| [point.x, point.y]).collect(),

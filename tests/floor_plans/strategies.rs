@@ -2,6 +2,9 @@
 
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 
+/// The paper's, and the eager one.
+pub const BOTH: [Strategy; 2] = [Strategy::Paper, Strategy::Eager];
+
 /// The strategy of this name.
 ///
 /// # Errors

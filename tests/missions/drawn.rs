@@ -8,7 +8,7 @@ use pleach::discrete::network::Role;
 use pleach::mission::Watcher;
 use std::collections::BTreeMap;
 use std::io;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Mutex, OnceLock};
 
 /// How a mission on a random floor plan went.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub struct Drawn {
 
 impl Drawn {
     /// The mission of a family and a seed in this order, with the monitor watching.
-    pub fn new(family: Family, seed: u64, strategy: Strategy) -> Self {
+    fn new(family: Family, seed: u64, strategy: Strategy) -> Self {
         let scenario = strategies::following(Some(strategy), scenario(family, seed));
         let mut ending = Ending::default();
         let (completed, acts) = Acts::in_mission(&scenario, &mut [&mut ending]);
@@ -35,12 +35,13 @@ impl Drawn {
     }
 
     /// The same, from those that have run.
-    pub fn shared(family: Family, seed: u64, strategy: Strategy) -> Arc<Self> {
-        type Missions = BTreeMap<String, Arc<OnceLock<Arc<Drawn>>>>;
+    pub fn shared(family: Family, seed: u64, strategy: Strategy) -> &'static Self {
+        type Missions = BTreeMap<String, &'static OnceLock<Drawn>>;
         static MISSIONS: Mutex<Missions> = Mutex::new(BTreeMap::new());
         let key = format!("{}-{seed} {strategy:?}", family.name());
-        let mission = Arc::clone(MISSIONS.lock().unwrap().entry(key).or_default());
-        Arc::clone(mission.get_or_init(|| Arc::new(Drawn::new(family, seed, strategy))))
+        let mission: &'static OnceLock<Drawn> =
+            MISSIONS.lock().unwrap().entry(key).or_insert_with(|| Box::leak(Box::default()));
+        mission.get_or_init(|| Drawn::new(family, seed, strategy))
     }
 
     pub fn is_serviced(&self) -> bool {

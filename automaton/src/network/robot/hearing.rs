@@ -228,18 +228,16 @@ impl Robot {
         let is_back = known.note_heard(period, self.period);
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
-        if (known.measured_at, known.position()) != (self.position, beacon.position) {
-            let moved = Neighbour::new(beacon, confirmed, period, self.position, &self.site);
-            self.neighbours.replace(at, moved);
+        let renewed = if (known.measured_at, known.position()) != (self.position, beacon.position) {
+            Neighbour::new(beacon, confirmed, period, self.position, &self.site)
         } else if !is_same {
-            let beacon = Arc::clone(beacon);
-            let renewed = Neighbour { beacon, confirmed, ..known.clone() };
-            self.neighbours.replace(at, renewed);
+            Neighbour { beacon: Arc::clone(beacon), confirmed, ..known.clone() }
         } else {
             known.confirmed = confirmed;
             self.has_news |= is_back || self.awaits_confirmation && is_newer;
             return;
-        }
+        };
+        self.neighbours.replace(at, renewed);
         if !is_same {
             self.note_branches(beacon, period);
         }
