@@ -19,11 +19,9 @@
 //!
 //! With a folder, scenarios that are not serviced are written there.
 
-#[path = "../tests/floor_plans/mod.rs"]
-mod floor_plans;
-
 use clap::Parser;
-use floor_plans::{Family, scenario, strategies};
+use missions::floor_plans::{Family, scenario};
+use missions::strategies;
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::discrete::network::{Phase, Role};

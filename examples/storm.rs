@@ -13,17 +13,15 @@
 //! say when recruits are called for. Without it that is what the scenario says: in the studies the paper's order,
 //! elsewhere the default.
 
-#[path = "../tests/floor_plans/mod.rs"]
-mod floor_plans;
 #[macro_use]
 mod say;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
-use floor_plans::in_storms::{
+use missions::in_storms::{
     self, SHIPPED, mission_in_storm, mission_with_settings_in_storm, shipped,
 };
-use floor_plans::strategies;
+use missions::strategies;
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::story;

@@ -3,11 +3,8 @@
 //! `cargo run --release --example stress -- FAMILY FIRST_SEED COUNT [FOLDER]`, with `all` for
 //! every family; scenarios that are not serviced are written to the folder.
 
-#[path = "../tests/floor_plans/mod.rs"]
-mod floor_plans;
-
 use clap::Parser;
-use floor_plans::{Family, scenario};
+use missions::floor_plans::{Family, scenario};
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use pleach::discrete::network::Role;
 use pleach::mission::{Watcher, run};

@@ -3,7 +3,7 @@
 //! A scenario with one of them is refused with a message that names the key, or it is lawful; then its
 //! mission runs, too. What is lawful is told here, apart from the ranges that the product states.
 
-use crate::missions::{network_over, run_unmonitored};
+use missions::{network_over, run_unmonitored};
 use pleach::automaton::network::Radio;
 use pleach::automaton::network::scenario::{CONTROL, Values};
 use pleach::scenario_file::parse_with;

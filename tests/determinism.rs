@@ -1,6 +1,6 @@
 //! The same scenario gives the same bytes, whatever the settings.
 
-use crate::missions::{run, shipped, traced, valid};
+use missions::{run, shipped, traced, valid};
 use pleach::automaton::network::scenario::{MotionSolver, RoutingMethod, Scenario};
 use std::thread;
 

@@ -1,7 +1,7 @@
 //! Tasks with times: asked for late, serviced for a while, taken back. How such a mission goes, also where
 //! messages are lost, and what the judge says of records in which tasks are dropped or closed for no reason.
 
-use crate::missions::{Mission, Period, run, run_by, shipped, valid};
+use missions::{Mission, Period, run, run_by, shipped, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
 use pleach::automaton::network::{Crash, NodeFaults};

@@ -1,7 +1,7 @@
 //! Traces of missions with faults are judged by what must hold under any fault: sound ones pass, spoiled ones
 //! do not.
 
-use crate::missions::shipped;
+use missions::shipped;
 use pleach::automaton::network::record::{Faults, Outcome};
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Crash, NodeFaults};

@@ -1,8 +1,8 @@
 //! `teams = "per_access_point"`: the robots of each access point pursue its tasks, at the same time as the others.
 //! Each mission is held against every property while it runs.
 
-use crate::floor_plans::{Family, scenario};
-use crate::missions::{Period, run, shipped, shipped_mission, traced, valid};
+use missions::floor_plans::{Family, scenario};
+use missions::{Period, run, shipped, shipped_mission, traced, valid};
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Teams, ValidScenario};
 use pleach::automaton::network::{Crash, NodeFaults};

@@ -1,6 +1,6 @@
 //! Distributed means distributed: what robots do is decided by the messages that reach them.
 
-use crate::missions::{
+use missions::{
     Arrival, AskedTwice, Filtered, Mission, Period, Written, network_over, run, run_over,
     run_unmonitored, shipped, shipped_mission, valid,
 };

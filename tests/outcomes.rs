@@ -1,6 +1,6 @@
 //! Every mission ends, with an outcome that says what happened.
 
-use crate::missions::{Arrival, Filtered, Mission, run, run_over, shipped, shipped_mission};
+use missions::{Arrival, Filtered, Mission, run, run_over, shipped, shipped_mission};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
     AccessPoint, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 fn lines() -> Vec<Value> {
     static TRACE: OnceLock<Vec<Value>> = OnceLock::new();
     let trace = TRACE.get_or_init(|| {
-        let scenario = ValidScenario::new(crate::missions::shipped("too-few")).unwrap();
+        let scenario = ValidScenario::new(missions::shipped("too-few")).unwrap();
         let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
         mission::run(&scenario, &mut [&mut writer]).unwrap();
         let text = String::from_utf8(writer.finish().unwrap()).unwrap();

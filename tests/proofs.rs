@@ -5,7 +5,7 @@ pub mod catalogue;
 #[path = "../proofs/planted-faults/src/rounding.rs"]
 pub mod rounding;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -194,15 +194,14 @@ fn the_document_names_every_fault_and_each_applies() {
     assert!(faults.len() >= 15);
     // The first two rows are the head of the table.
     assert_eq!(rows.len(), faults.len() + 2);
-    let names = Names::of_the_packages();
+    let packages = Packages::read();
     for fault in faults {
         let planted = fault.planted(root()).unwrap();
         assert!(planted.contains(&fault.after) && !fault.says.is_empty(), "{}", fault.name);
         let row = format!("| {} | {} | {} |", fault.name, fault.wrong, fault.engine);
         assert!(rows.iter().any(|found| found.starts_with(&row)), "it should have: {row}");
         assert!(fault.command.starts_with("test -p "), "{}", fault.name);
-        let filter = fault.command.rsplit([' ', ':']).find(|part| !part.is_empty()).unwrap();
-        assert!(names.fit(filter), "{}: no test is called {filter}", fault.name);
+        assert!(packages.hold(&fault.command), "{}: no test for {}", fault.name, fault.command);
     }
 }
 
@@ -217,39 +216,57 @@ fn the_document_counts_the_places_of_rounding_and_each_applies() {
     let unseen = places.iter().filter(|place| place.unseen.is_some()).count();
     let sentence = format!("{} places, a test fails at all but {unseen}", places.len());
     assert!(document().contains(&sentence), "it should say: {sentence}");
-    let names = Names::of_the_packages();
-    for place in &places {
-        let filter = place.test.rsplit([' ', ':']).find(|part| !part.is_empty()).unwrap();
-        assert!(names.fit(filter), "no test is called {filter}");
-    }
+    let packages = Packages::read();
+    places
+        .iter()
+        .for_each(|place| assert!(packages.hold(&place.test), "no test for {}", place.test));
 }
 
 /// The names that a filter of tests may fit: of files, of folders, and of functions in sources and tests.
+#[derive(Default)]
 struct Names {
     files: BTreeSet<String>,
     functions: BTreeSet<String>,
 }
 
-impl Names {
-    fn of_the_packages() -> Self {
+/// The names in each package, by what it is called.
+struct Packages(BTreeMap<String, Names>);
+
+impl Packages {
+    fn read() -> Self {
+        let mut packages: BTreeMap<String, Names> = BTreeMap::new();
         let folders = PACKAGES.iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
         let folders = folders.map(|(package, it)| root().join(package).join(it));
-        let (mut files, mut functions) = (BTreeSet::new(), BTreeSet::new());
         for file in folders.filter(|folder| folder.exists()).flat_map(files_below) {
             let path = relative(&file);
+            let names = packages.entry(package_of(&path)).or_default();
             let parts = Path::new(&path).with_extension("");
-            files.extend(parts.iter().map(|part| part.to_string_lossy().into_owned()));
+            names.files.extend(parts.iter().map(|part| part.to_string_lossy().into_owned()));
             let source = fs::read_to_string(&file).unwrap_or_default();
-            let names = source.lines().filter_map(|line| line.trim_start().strip_prefix("fn "));
-            functions.extend(names.filter_map(|name| Some(name.split_once('(')?.0.to_owned())));
+            let found = source.lines().filter_map(|line| line.trim_start().strip_prefix("fn "));
+            names.functions.extend(found.filter_map(|it| Some(it.split_once('(')?.0.to_owned())));
         }
-        Self { files, functions }
+        Self(packages)
     }
 
-    /// Whether a file or a folder has this name, or that of a function contains it. A command whose filter fits
-    /// nothing passes.
-    fn fit(&self, filter: &str) -> bool {
-        self.files.contains(filter) || self.functions.iter().any(|name| name.contains(filter))
+    /// Whether the filter of a command, `-p PACKAGE ... FILTER`, fits a test of its package: it is the name of a file
+    /// or a folder, or part of that of a function. A command whose filter fits nothing passes.
+    fn hold(&self, command: &str) -> bool {
+        let package = command.split("-p ").nth(1).and_then(|rest| rest.split(' ').next());
+        let filter = command.rsplit([' ', ':']).find(|part| !part.is_empty()).unwrap();
+        let names = package.and_then(|package| self.0.get(package));
+        names.is_some_and(|names| {
+            names.files.contains(filter) || names.functions.iter().any(|it| it.contains(filter))
+        })
+    }
+}
+
+/// The package that a file belongs to.
+fn package_of(path: &str) -> String {
+    match path.split('/').next().unwrap() {
+        _ if path.starts_with("tests/missions/") => "missions".to_owned(),
+        "src" | "tests" => "pleach".to_owned(),
+        folder => format!("pleach-{folder}"),
     }
 }
 

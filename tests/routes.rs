@@ -2,8 +2,8 @@
 //! every control period, and optimal once they have converged.
 
 use crate::best_routes::BestRoutes;
-use crate::floor_plans::Dice;
-use crate::missions::{Filtered, network_over, run_unmonitored, valid};
+use missions::floor_plans::Dice;
+use missions::{Filtered, network_over, run_unmonitored, valid};
 use pleach::automaton::network::Site;
 use pleach::automaton::network::record::Snapshot;
 use pleach::automaton::network::scenario::{

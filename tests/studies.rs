@@ -1,8 +1,8 @@
 //! The shipped scenarios as whole missions: how each ends, the story it was made to tell, and
 //! what an oracle that knows nothing of the monitor reads out of its trace.
 
-use crate::missions::{Mission, Period, shipped_mission, shipped_names};
-use crate::oracle::audit;
+use missions::oracle::audit;
+use missions::{Mission, Period, shipped_mission, shipped_names};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::Settings;
 use pleach::continuous::Point;

@@ -1,7 +1,7 @@
 //! What is written into a trace can be read back, and is the same to the byte.
 
 use crate::common::{end, every_event, reports, room, show};
-use crate::missions::{shipped, valid};
+use missions::{shipped, valid};
 use pleach::automaton::network::record::{End, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Settings, Strategy};
 use pleach::judge::{Verdict, judge};

@@ -1,6 +1,6 @@
 //! A change of a record, and the record that it changes.
 
-use crate::missions::{Mission, Period};
+use missions::{Mission, Period};
 use pleach::automaton::network::record::{End, MissionEvent, Snapshot};
 
 /// What a trace holds after its header.

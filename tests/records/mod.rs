@@ -11,8 +11,8 @@ mod snapshots;
 mod spoils;
 
 use crate::generated::{keep_up_to_date, read};
-use crate::missions::{Mission, Period, run, run_by, shipped};
 use change::{Change, Record};
+use missions::{Mission, Period, run, run_by, shipped};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::automaton::network::scenario::Strategy;
 use pleach::discrete::network::activity::may_follow;
@@ -99,7 +99,7 @@ struct Fate {
 fn fates(changes: &[Change]) -> BTreeMap<&'static str, Fate> {
     let mut fates = BTreeMap::<_, Fate>::new();
     for mission in missions() {
-        let scenario = crate::missions::valid(mission.scenario.clone());
+        let scenario = missions::valid(mission.scenario.clone());
         let mut tries: Vec<_> = changes
             .iter()
             .flat_map(|change| {

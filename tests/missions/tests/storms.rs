@@ -2,22 +2,21 @@
 //!
 //! `cargo run --release --example storm -- table 4` shows all kinds of storms, and what breaks in them.
 
-use crate::floor_plans::in_storms::{self, DURATION, mission_of_turn, shipped};
-use crate::floor_plans::strategies;
 use crate::stressed::stressed_scenarios;
+use missions::in_storms::{self, DURATION, mission_of_turn, shipped};
+use missions::strategies;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::automaton::network::{Crash, FaultyNode, Message, Network, NodeFaults};
 use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
 use pleach::continuous::Point;
+use pleach::mission;
 use pleach::verify::network::storm::{
     Judge, Kind, Storm, Verdict, allowing_for, draw, judged_run, network,
 };
 use pleach::verify::network::{Property, Violation};
-use pleach::{mission, scenario_file};
 use std::ops::ControlFlow;
-use std::path::Path;
 
 const PERIODS: usize = 600;
 /// Control periods for robots that keep larger clearances and shorter links.
@@ -51,8 +50,7 @@ fn end_although_one_stops(name: &str, node: usize, crash: Crash, periods: usize)
 
 /// A scenario that is kept for what happens when one of its robots stops.
 fn kept(name: &str) -> ValidScenario {
-    let file = format!("tests/scenarios/{name}.toml");
-    scenario_file::read(Path::new(&file)).expect("it is a scenario")
+    missions::read(format!("tests/scenarios/{name}.toml"))
 }
 
 /// As [`end_although_one_stops`], in any scenario.

@@ -1,17 +1,20 @@
 //! What acts in missions: which rows of their tables the nodes take, and what they say to each other.
 
-use super::medium::Noted;
+use crate::medium::Noted;
 use pleach::automaton::network::scenario::{Fleet, ValidScenario};
 use pleach::automaton::network::{Fleets, NamedRow, Network, Site};
 use pleach::mission::{self, Completed, Watcher};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How many missions there are, and in how many of them each row is taken and each kind of message heard.
+/// What acts in missions.
 #[derive(Clone, Debug, Default)]
 pub struct Acts {
+    /// How many missions there are.
     pub missions: usize,
+    /// In how many of them a row is taken.
     pub rows: BTreeMap<NamedRow, usize>,
+    /// In how many of them a kind of message is heard.
     pub heard: BTreeMap<&'static str, usize>,
 }
 
@@ -60,6 +63,8 @@ impl Acts {
         acts
     }
 
+    /// What acts in these missions and in others.
+    #[must_use]
     pub fn and(mut self, other: Acts) -> Self {
         self.missions += other.missions;
         for (row, times) in other.rows {

@@ -1,9 +1,9 @@
 //! `strategy = "eager"`: recruits are called for ahead of a standstill, and the primary team goes on while they
 //! come. Each mission is held against every property while it runs.
 
-use crate::floor_plans::in_storms::mission_in_storm;
-use crate::floor_plans::{Family, strategies};
-use crate::missions::{Drawn, Mission, run_by, shipped, used};
+use missions::floor_plans::Family;
+use missions::in_storms::mission_in_storm;
+use missions::{Drawn, Mission, files, read, run_by, shipped, strategies, used};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, ValidScenario};
 use pleach::discrete::network::{Phase, Role};
@@ -23,7 +23,7 @@ fn both(scenario: &Scenario) -> [Mission; 2] {
 
 /// In how many periods the primary team moves although it is not the active one.
 fn moves_on_its_own(mission: &Mission) -> usize {
-    let moves = |pair: &&[crate::missions::Period]| {
+    let moves = |pair: &&[missions::Period]| {
         let [before, after] = [&pair[0].snapshot, &pair[1].snapshot];
         let is_active = before.phase == Phase::Advance || after.phase == Phase::Advance;
         let moves = |&robot: &usize| before.positions[robot] != after.positions[robot];
@@ -100,8 +100,8 @@ fn random_missions_are_serviced_alike_and_sooner() {
 /// Those that failed in the paper's order; the others are eager as they are.
 #[test]
 fn what_failed_once_does_not_fail_with_recruits_called_for_ahead() {
-    let files = crate::found_missions::files("tests/scenarios/found").into_iter();
-    let scenarios = files.map(|file| pleach::scenario_file::read(&file).unwrap().into_scenario());
+    let files = files("tests/scenarios/found").into_iter();
+    let scenarios = files.map(|file| read(file).into_scenario());
     for scenario in scenarios.filter(|it| it.control.strategy == Some(Strategy::Paper)) {
         run_by(Strategy::Eager, scenario).assert_serviced();
     }

@@ -1,12 +1,6 @@
 //! Missions that are run to their end, and everything that their observers saw.
 
-#![allow(dead_code)] // not every test needs everything
-
-mod acts;
-mod drawn;
-mod medium;
-
-use crate::floor_plans::in_storms;
+use crate::{Acts, shipped, shipped_names, valid};
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, ValidScenario};
 use pleach::automaton::network::{Message, Network, Site};
@@ -22,39 +16,26 @@ use std::io;
 use std::ops::ControlFlow;
 use std::sync::{Arc, LazyLock, OnceLock};
 
-pub use acts::{Acts, counted};
-pub use drawn::{Drawn, redundant, used};
-pub use medium::{Arrival, AskedTwice, Filtered, Written};
-
 /// What a control period showed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Period {
+    /// Where robots are and what they hold.
     pub snapshot: Snapshot,
+    /// What happened.
     pub events: Vec<MissionEvent>,
 }
 
 /// A mission that has ended.
 #[derive(Clone, Debug)]
 pub struct Mission {
+    /// What it started from.
     pub scenario: Scenario,
+    /// Its control periods.
     pub periods: Vec<Period>,
+    /// How it ended.
     pub end: End,
+    /// How close it came to the bounds.
     pub extremes: Extremes,
-}
-
-/// The names of the scenarios that are shipped, in ascending order.
-pub fn shipped_names() -> Vec<String> {
-    let mut names: Vec<_> = std::fs::read_dir("scenarios")
-        .unwrap()
-        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
-        .collect();
-    names.sort();
-    names
-}
-
-/// The scenario of that name among those that are shipped.
-pub fn shipped(name: &str) -> Scenario {
-    in_storms::shipped(name).into_scenario()
 }
 
 /// The mission of a shipped scenario and what acts in it, run once for all tests.
@@ -69,11 +50,6 @@ pub fn shipped_mission(name: &str) -> &'static (Mission, Acts) {
         let (completed, acts) = in_mission(&scenario, &mut [&mut recorder]);
         (Mission::new(scenario.into_scenario(), recorder, completed), acts)
     })
-}
-
-/// The scenario, from which a mission can start.
-pub fn valid(scenario: Scenario) -> ValidScenario {
-    ValidScenario::new(scenario).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The mission of a scenario, with the monitor watching.

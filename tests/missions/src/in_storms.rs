@@ -1,14 +1,12 @@
 //! Missions in storms of all kinds, in shipped scenarios and on the floor plans of every day in turn.
 
-use std::path::Path;
-
 use pleach::automaton::network::scenario::{
     MotionSolver, RoutingMethod, Scenario, Settings, Strategy, ValidScenario,
 };
-use pleach::scenario_file;
 use pleach::verify::network::storm::{Kind, Storm, allowing_for, draw};
 
-use super::{Dice, Family, scenario as plan};
+use crate::floor_plans::{Dice, Family, scenario as plan};
+use crate::read;
 
 /// Scenarios that are tried in storms beside random ones.
 pub const SHIPPED: [&str; 5] = ["study-1", "study-2", "office", "discs", "corridor"];
@@ -17,8 +15,7 @@ pub const DURATION: f64 = 300.0;
 
 /// A shipped scenario.
 pub fn shipped(name: &str) -> ValidScenario {
-    let path = format!("{}/scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"))
+    read(format!("scenarios/{name}.toml"))
 }
 
 /// The mission of a seed, and its storm: kinds and plans take turns.

@@ -1,7 +1,7 @@
 //! Missions on random floor plans, each run once for all tests.
 
-use super::Acts;
-use crate::floor_plans::{Family, scenario, strategies};
+use crate::floor_plans::{Family, scenario};
+use crate::{Acts, strategies};
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::Strategy;
 use pleach::discrete::network::Role;
@@ -15,11 +15,13 @@ use std::sync::{Mutex, OnceLock};
 pub struct Drawn {
     /// Family and seed.
     pub name: String,
+    /// How it ended.
     pub end: End,
     /// The number of control periods.
     pub periods: usize,
     /// What the observers saw last.
     pub last: Snapshot,
+    /// What acted in it.
     pub acts: Acts,
 }
 
@@ -44,6 +46,7 @@ impl Drawn {
         mission.get_or_init(|| Drawn::new(family, seed, strategy))
     }
 
+    /// Whether all tasks were serviced.
     pub fn is_serviced(&self) -> bool {
         self.end.outcome == Outcome::Serviced
     }

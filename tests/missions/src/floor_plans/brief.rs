@@ -4,7 +4,7 @@ use super::dice::Dice;
 use super::outline::Floor;
 use super::places::Places;
 use pleach::automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Settings, Task, WorkspaceOutline,
+    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
 };
 
 /// How the robots stand when the mission starts.
@@ -165,20 +165,6 @@ impl Brief {
                 .collect(),
             ..scenario
         }
-    }
-
-    /// The settings, in units of l.
-    pub fn settings(&self) -> Settings {
-        Settings::resolve(&Scenario {
-            name: String::new(),
-            description: None,
-            workspace: WorkspaceOutline { boundary: Vec::new(), holes: Vec::new() },
-            link: LinkRanges::new(1.0, self.max_range),
-            control: self.control,
-            access_point: Vec::new(),
-            robot: Vec::new(),
-            task: Vec::new(),
-        })
     }
 }
 

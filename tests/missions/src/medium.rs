@@ -15,10 +15,13 @@ pub struct Arrival {
     pub number: u64,
     /// k.
     pub period: usize,
+    /// Who sends it.
     pub sender: NodeId,
+    /// Who would hear it.
     pub receiver: NodeId,
     /// The length of the link; none of a wire.
     pub distance: Option<f64>,
+    /// Whether it is a beacon.
     pub is_beacon: bool,
 }
 
@@ -94,6 +97,7 @@ pub struct Filtered<F> {
 }
 
 impl<F: FnMut(Arrival) -> bool> Filtered<F> {
+    /// The radio of a site, less these messages.
     pub fn new(site: &Site, loses: F) -> Through<Self> {
         let positions = Vec::new();
         let filter = Filtered { robots: site.robots, positions, messages: 0, updates: 0, loses };
@@ -137,6 +141,7 @@ pub struct AskedTwice {
 }
 
 impl AskedTwice {
+    /// The radio of a site with two access points or more.
     pub fn new(site: &Site) -> Through<Self> {
         Through::new(site, AskedTwice { second: site.robots + 1 })
     }
@@ -230,6 +235,7 @@ pub struct Written {
 }
 
 impl Written {
+    /// The radio of a site.
     pub fn new(site: &Site) -> Through<Self> {
         Through::new(site, Written { site: site.clone(), bytes: 0 })
     }

@@ -20,9 +20,13 @@ type Place = [f64; 2];
 /// The extremes that the oracle measures.
 #[derive(Clone, Copy, Debug)]
 pub struct Findings {
+    /// The least distance of two robots.
     pub pair_distance: f64,
+    /// The least distance of a robot from a wall.
     pub clearance: f64,
+    /// The least residual.
     pub residual: f64,
+    /// The largest load.
     pub load: f64,
 }
 

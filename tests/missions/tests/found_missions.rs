@@ -1,9 +1,9 @@
 //! Missions that failed once, found by random floor plans. Each file says what went wrong; all
 //! tasks of all of them are serviced, with every property monitored.
 
+use missions::{files, read};
 use pleach::automaton::network::record::{End, Outcome};
-use pleach::{mission, scenario_file};
-use std::path::PathBuf;
+use pleach::mission;
 
 #[test]
 fn what_failed_once_does_not_fail_again() {
@@ -23,7 +23,7 @@ fn hard_missions_come_to_an_end() {
 
 /// Missions that should be serviced and are not, each with the reason.
 #[test]
-#[ignore = "fails: it holds what is known to be wrong, cargo test --test it found_missions -- --ignored"]
+#[ignore = "fails: it holds what is known to be wrong, cargo test -p missions --test it found_missions -- --ignored"]
 fn what_is_open_is_serviced() {
     for (end, said) in ends("tests/scenarios/open") {
         assert_eq!(end.outcome, Outcome::Serviced, "{said}");
@@ -33,18 +33,9 @@ fn what_is_open_is_serviced() {
 /// How the missions of a folder end, by the names of their files, and the same in words.
 fn ends(folder: &str) -> impl Iterator<Item = (End, String)> {
     files(folder).into_iter().map(|file| {
-        let scenario = scenario_file::read(&file).unwrap();
+        let scenario = read(file);
         let end = mission::run(&scenario, &mut []).unwrap().end;
         let said = format!("{}: {:?}: {}", scenario.name, end.outcome, end.reason);
         (end, said)
     })
-}
-
-/// The files of a folder, by name.
-pub fn files(folder: &str) -> Vec<PathBuf> {
-    let files = std::fs::read_dir(folder).unwrap();
-    let mut files: Vec<PathBuf> = files.map(|entry| entry.unwrap().path()).collect();
-    files.sort();
-    assert!(!files.is_empty());
-    files
 }

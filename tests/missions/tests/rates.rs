@@ -2,7 +2,7 @@
 //! takes.
 
 use crate::generated::keep_up_to_date;
-use crate::missions::{Mission, run, shipped};
+use missions::{Mission, run, shipped};
 use pleach::automaton::network::record::{MissionEvent, Outcome};
 use pleach::automaton::network::scenario::Scenario;
 use pleach::discrete::network::Role;
@@ -80,7 +80,7 @@ fn the_lower_the_rates_the_fewer_the_recruits() {
         let ended = of_radio.iter().filter(|it| it.outcome != Outcome::Serviced);
         ended.for_each(|it| assert_eq!(it.outcome, Outcome::Blocked, "at {}", it.rate));
     }
-    keep_up_to_date("docs/pictures/rates.svg", &picture(&efforts), "rates::");
+    keep_up_to_date("../../docs/pictures/rates.svg", &picture(&efforts), "rates::");
 }
 
 /// Thirteen robots are too few at this rate for links that carry it in any case.

@@ -1,11 +1,11 @@
 //! Missions on floor plans to which the robots are not tuned.
 //!
-//! A few run in every `cargo test`; many with
-//! `cargo test --release --test it random_missions -- --ignored --nocapture`. To look at single
+//! A few run in every `cargo test -p missions`; many with
+//! `cargo test --release -p missions --test it random_missions -- --ignored --nocapture`. To look at single
 //! ones: `cargo run --release --example stress -- FAMILY FIRST_SEED COUNT FOLDER`.
 
-use crate::floor_plans::{Family, scenario};
-use crate::missions::{Drawn, redundant};
+use missions::floor_plans::{Family, scenario};
+use missions::{Drawn, redundant};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::Strategy;
 use pleach::mission::run;
@@ -91,7 +91,7 @@ fn a_family_and_a_seed_are_one_scenario() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test --release --test it random_missions -- --ignored --nocapture"]
+#[ignore = "takes minutes: cargo test --release -p missions --test it random_missions -- --ignored --nocapture"]
 fn many_missions_of_every_family() {
     let mut complaints = Vec::new();
     for family in Family::ALL.into_iter().chain(Family::WINDING) {

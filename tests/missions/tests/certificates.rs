@@ -1,18 +1,16 @@
 //! A mission that is given up comes with a certificate, and the judge takes no false one.
 
-use crate::missions::{run, shipped, traced, valid};
+use missions::{read, run, shipped, traced, valid};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::Scenario;
 use pleach::judge::{Verdict, judge};
-use pleach::scenario_file::read;
 use pleach::trace::TraceReader;
 use pleach::verify::network::Property;
 use serde_json::Value;
-use std::path::Path;
 
 /// A scenario that is given up, with the outcome and the kind of certificate.
 fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
-    let kept = |name: &str| read(&Path::new("tests/scenarios").join(name)).unwrap().into_scenario();
+    let kept = |name: &str| read(format!("tests/scenarios/{name}")).into_scenario();
     let mut pair = shipped("too-few");
     pair.robot.truncate(2);
     // A robot that sends all the time has none left for a link that becomes longer.
@@ -143,8 +141,7 @@ fn every_end_that_is_given_up_comes_with_a_certificate_and_false_ones_are_refuse
 /// The task lies in a thin wall, nearer to the side on which no robot is, and within δ of the other.
 #[test]
 fn a_task_in_a_wall_is_serviced_from_the_side_where_the_robots_are() {
-    let mut scenario =
-        read(Path::new("tests/scenarios/touching/cut-in-two.toml")).unwrap().into_scenario();
+    let mut scenario = read("tests/scenarios/touching/cut-in-two.toml").into_scenario();
     scenario.workspace.holes = vec![vec![[1.0, 0.0], [1.02, 0.0], [1.02, 1.0], [1.0, 1.0]]];
     scenario.task[0].position = [1.015, 0.5];
     assert!(

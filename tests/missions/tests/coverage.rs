@@ -1,13 +1,13 @@
 //! Which rows of their tables the nodes take, and what they say to each other: in the shipped scenarios,
 //! in other missions, in storms, and where everything that can happen to a few robots is explored.
 //!
-//! `PLEACH_UPDATE_DOCS=1 cargo test --test it coverage` writes the page anew, after
+//! `PLEACH_UPDATE_DOCS=1 cargo test -p missions --test it coverage` writes the page anew, after
 //! `PLEACH_UPDATE_DOCS=1 cargo test -p pleach-exploration --test it campaigns` has written what is explored.
 
-use crate::floor_plans::{Family, strategies};
 use crate::generated::{keep_up_to_date, read};
-use crate::missions::{Acts, Drawn, counted, shipped, shipped_mission, shipped_names, valid};
 use crate::stressed::stressed_scenarios;
+use missions::floor_plans::Family;
+use missions::{Acts, Drawn, counted, shipped, shipped_mission, shipped_names, strategies, valid};
 use pleach::automaton::Executor;
 use pleach::automaton::network::NamedRow;
 use pleach::automaton::network::scenario::RoutingMethod;
@@ -139,7 +139,7 @@ const HORIZON_OF_STORMS: f64 = 900.0;
 /// How many configurations the quick campaigns explore, and in how many of them each row is taken, as their own
 /// test keeps it.
 fn explored() -> (usize, BTreeMap<String, usize>) {
-    let kept = read("exploration/tests/rows.txt");
+    let kept = read("../../exploration/tests/rows.txt");
     let rows = kept.lines().map(|line| {
         let (configurations, row) = line.split_once(' ').unwrap();
         (row.to_owned(), configurations.parse().unwrap())
@@ -159,7 +159,7 @@ fn every_row_is_taken_or_has_a_reason() {
     let (in_others, in_storms) = (in_random().and(in_special()), in_storms());
     let (configurations, in_explored) = explored();
     let mut page = format!(
-        "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it coverage -->\n\n\
+        "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test -p missions --test it coverage -->\n\n\
          # Coverage of the tables by tests\n\n\
          In how many of the {} shipped scenarios, of {} other missions (random, under stress, at their \
          limits), of {} storms, and of {configurations} configurations that are explored exhaustively some \
@@ -205,7 +205,7 @@ fn every_row_is_taken_or_has_a_reason() {
     }
     let needless = REASONS.iter().filter(|(_, reason)| !used.contains(reason));
     unexplained.extend(needless.map(|(_, reason)| format!("needless: {reason}")));
-    keep_up_to_date("docs/coverage.md", &page, "coverage");
+    keep_up_to_date("../../docs/coverage.md", &page, "coverage");
     assert!(
         unexplained.is_empty(),
         "rows that nothing takes have a reason, and reasons have a row:\n{}",

@@ -2,7 +2,7 @@
 //! steps, links of the tree that may be weak. With the settings of the shipped scenarios loads stay
 //! far below 1, and hardly a robot ever objects to a move.
 
-use crate::missions::{run, shipped};
+use missions::{read, run, shipped};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::Scenario;
 
@@ -55,8 +55,7 @@ fn missions_under_stress_keep_what_is_promised() {
 /// then, so that no residual becomes negative, and the mission ends by naming the loads.
 #[test]
 fn rates_that_links_cannot_carry_end_the_mission_and_break_nothing() {
-    let saturated = include_str!("scenarios/saturated.toml");
-    let saturated: Scenario = toml::from_str(saturated).expect("it is a scenario");
+    let saturated = read("tests/scenarios/saturated.toml").into_scenario();
     let cases = [0.27, 0.28, 0.29, 0.3]
         .map(|rate| (saturated.clone(), rate))
         .into_iter()

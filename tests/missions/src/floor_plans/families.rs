@@ -63,6 +63,7 @@ impl Family {
     pub const WINDING: [Family; 5] =
         [Family::Maze, Family::Spiral, Family::Caves, Family::Islands, Family::Clusters];
 
+    /// All others.
     pub const ALL: [Family; 14] = [
         Family::Office,
         Family::Ring,
@@ -80,6 +81,7 @@ impl Family {
         Family::Rates,
     ];
 
+    /// What it is called.
     pub fn name(self) -> &'static str {
         match self {
             Family::Office => "office",

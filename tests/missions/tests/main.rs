@@ -1,0 +1,15 @@
+//! Hundreds of missions, in one program.
+
+#![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+#[path = "../../generated/mod.rs"]
+mod generated;
+
+mod certificates;
+mod coverage;
+mod found_missions;
+mod random_missions;
+mod rates;
+mod storms;
+mod strategies;
+mod stressed;
