@@ -194,6 +194,8 @@ fn the_document_names_every_fault_and_each_applies() {
     assert!(faults.len() >= 15);
     // The first two rows are the head of the table.
     assert_eq!(rows.len(), faults.len() + 2);
+    let count = format!("{} faults, each with the check that catches it", faults.len());
+    assert!(document.contains(&count), "it should say: {count}");
     let packages = Packages::read();
     for fault in faults {
         let planted = fault.planted(root()).unwrap();

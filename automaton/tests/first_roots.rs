@@ -214,16 +214,16 @@ fn stiff_and_singular_flows_are_met() {
     ends(place.tan(), 0.5, -(0.5f64.sin()).ln(), 1e-6);
 }
 
-/// ẋ = 1 + x² from −1 to 1, a hundred thousand times: π ÷ 2 each.
+/// ẋ = 1 + x² from −1 to 1, ten thousand times: π ÷ 2 each.
 #[test]
-fn a_hundred_thousand_integrated_turns_keep_their_period() {
+fn ten_thousand_integrated_turns_keep_their_period() {
     let [place, ..] = coordinates();
     let back = from(Here).on(Go).to(Here).must(place.at_least(1.0)).then(place.becomes(-1.0));
     let turning = body([-1.0, 0.0], [1.0 + place.power(2.0), 0.0.into()]).transition(back);
-    let trajectory = run(turning, 1e5 * FRAC_PI_2 + 0.5);
-    assert_eq!(trajectory.jumps().len(), 100_000);
+    let trajectory = run(turning, 1e4 * FRAC_PI_2 + 0.5);
+    assert_eq!(trajectory.jumps().len(), 10_000);
     let last = trajectory.jumps().last().expect("there are").at.t;
-    assert_near(last, 1e5 * FRAC_PI_2, 1e-9 * 1e5);
+    assert_near(last, 1e4 * FRAC_PI_2, 1e-9 * 1e4);
 }
 
 /// Resets onto the bound of the guard: it holds again at once, or from the next number on.
