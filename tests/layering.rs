@@ -180,15 +180,35 @@ fn guards_and_the_discrete_layer_need_the_standard_library_only() {
     }
 }
 
+/// A second opinion is worth something if it is not the first one again.
+#[test]
+fn the_oracle_has_only_what_a_trace_holds() {
+    const HELD: [&str; 3] = [
+        "use pleach::automaton::network::record::{MissionEvent, Route, Snapshot};",
+        "use pleach::automaton::network::scenario::Scenario;",
+        "use pleach::trace::{TraceEntry, TraceReader};",
+    ];
+    let oracle = Source::read(&root().join("tests/missions/src/oracle.rs"));
+    let uses = oracle.lines_with(&["pleach", "crate", "super"]);
+    let is_held = |line: &String| HELD.iter().any(|held| line.ends_with(held));
+    assert!(uses.len() >= HELD.len(), "the oracle is not where it is looked for");
+    assert_none(
+        uses.into_iter().filter(|line| !is_held(line)).collect(),
+        "it computes the rest itself",
+    );
+}
+
 /// The tests of a package are one program, so that a file that it does not name is never run.
 #[test]
 fn every_file_of_tests_is_in_the_program_of_its_package() {
-    for folder in PACKAGES.map(|package| root().join(package).join("tests")) {
+    for package in PACKAGES.into_iter().chain(["exploration", "tests/missions"]) {
+        let folder = root().join(package).join("tests");
         let Ok(program) = fs::read_to_string(folder.join("main.rs")) else { continue };
         for entry in fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-            let is_module = path.join("mod.rs").exists() || path.extension().is_some();
+            let is_source = path.extension().is_some_and(|extension| extension == "rs");
+            let is_module = path.join("mod.rs").exists() || is_source;
             let is_named = name == "main" || program.contains(&format!("mod {name};\n"));
             assert!(is_named || !is_module, "{} is not in main.rs", path.display());
         }
