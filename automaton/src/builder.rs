@@ -20,7 +20,7 @@ use crate::flow::{Flow, Rate};
 use crate::law::Laws;
 use crate::located::Transfer;
 use crate::observed::{Exclusion, Observed, Watch};
-use crate::outline::{names_of, place_of};
+use crate::outline::{mapped, names_of, place_of};
 use crate::reset::Reset;
 use draft::{Draft, Said, Vocabulary};
 use parts::{Given, Parts};
@@ -55,7 +55,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         let mut builder = Builder {
             locations,
             events: E::ALL.to_vec(),
-            parts: Parts { initial, ..Parts::default() },
+            parts: Parts::starting_in(initial),
             flows: Vec::new(),
             resets: Vec::new(),
             initial_state: None,
@@ -142,7 +142,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             initial: self.locations[self.parts.initial],
             locations: chosen(&self.locations, &draft.location_order),
             events: chosen(&self.events, &draft.event_order),
-            // Taken, not moved: a builder that lacks fields takes twice as long to compile.
+            // Taken, not moved: the builder is dropped as a whole then, which compiles to less.
             initial_state: self.initial_state.take(),
             ranges: take(&mut self.parts.ranges),
             known: self.parts.known.take(),
@@ -187,6 +187,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             graph.add_node(self.locations[location]);
         }
         for (number, row) in self.parts.rows.iter().enumerate() {
+            let [source, target] = draft.ends(number);
             let Given { guard, reset, .. } = draft.given_for(number)?;
             let transition = Transition {
                 event: self.events[row.event],
@@ -196,34 +197,32 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
                 urgency: row.urgency,
                 priority: row.priority,
             };
-            let [source, target] = draft.ends(number);
             graph.add_edge(source, target, transition);
         }
         Ok(graph)
     }
 
     fn modes(&self, draft: &Draft<'_>) -> Vec<Mode<S>> {
-        let mut modes = Vec::new();
-        for &location in &draft.location_order {
-            let Said { rates, flow, invariant, commands } = draft.said(location);
+        mapped(&draft.location_order, |location| {
+            let Said { rates, flow, invariant, commands } = draft.said(*location);
             let flow = match (rates, flow) {
                 (Some(rates), _) => Some(Flow::of_rates(rates)),
                 (None, Some(number)) => Some(self.flows[number].clone()),
                 (None, None) => None,
             };
             let watch = invariant.and_then(self.watch);
-            modes.push(Mode { flow, invariant: invariant.cloned(), watch, commands });
-        }
-        modes
+            Mode { flow, invariant: invariant.cloned(), watch, commands }
+        })
     }
 
     fn rows(&self) -> Vec<Row<L, E>> {
-        let mut rows = Vec::new();
-        for &Row { source, event, target, urgency, priority } in &self.parts.rows {
-            let [source, target] = [self.locations[source], self.locations[target]];
-            rows.push(Row { source, event: self.events[event], target, urgency, priority });
-        }
-        rows
+        mapped(&self.parts.rows, |row| Row {
+            source: self.locations[row.source],
+            event: self.events[row.event],
+            target: self.locations[row.target],
+            urgency: row.urgency,
+            priority: row.priority,
+        })
     }
 }
 
@@ -311,9 +310,5 @@ fn number_of<T: Copy + PartialEq>(one: T, known: &mut Vec<T>) -> usize {
 
 /// Those with these numbers.
 fn chosen<T: Copy>(known: &[T], numbers: &[usize]) -> Vec<T> {
-    let mut chosen = Vec::with_capacity(numbers.len());
-    for &number in numbers {
-        chosen.push(known[number]);
-    }
-    chosen
+    mapped(numbers, |number| known[*number])
 }

@@ -10,7 +10,7 @@ use pleach_guards::{Expression, Substitution, constant};
 use thiserror::Error;
 
 use crate::coordinates::Coordinate;
-use crate::outline;
+use crate::outline::{self, mapped};
 
 /// The flow of a location.
 ///
@@ -209,11 +209,7 @@ impl<S, const N: usize> From<[Rate<S>; N]> for Flow<S> {
 
 impl<S> From<Vec<Rate<S>>> for Flow<S> {
     fn from(rates: Vec<Rate<S>>) -> Self {
-        let mut untyped = Vec::with_capacity(rates.len());
-        for rate in rates {
-            untyped.push(rate.untyped());
-        }
-        Flow::of_rates(untyped)
+        Flow::of_rates(mapped(rates, Rate::untyped))
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use pleach_guards::{EvaluationError, Expression, Substitution, Valuation};
 
 use crate::coordinates::Coordinates;
-use crate::outline::Effect;
+use crate::outline::{Effect, mapped};
 
 /// The reset of a transition.
 ///
@@ -209,11 +209,7 @@ impl<S: Coordinates> Reset<S> {
 
 impl<S: Coordinates> From<Vec<Assignment<S>>> for Reset<S> {
     fn from(assignments: Vec<Assignment<S>>) -> Self {
-        let mut untyped = Vec::with_capacity(assignments.len());
-        for assignment in assignments {
-            untyped.push(assignment.untyped());
-        }
-        Reset::of_assignments(untyped)
+        Reset::of_assignments(mapped(assignments, Assignment::untyped))
     }
 }
 

@@ -34,7 +34,7 @@ pub(super) struct Vocabulary<'a> {
     pub(super) listed: usize,
     /// Whether others may be mentioned.
     pub(super) is_open: bool,
-    /// What `Debug` prints.
+    /// The one with a number, as `Debug` prints it.
     pub(super) debug: &'a dyn Fn(usize) -> String,
 }
 

@@ -51,6 +51,10 @@ pub(super) struct Given {
 pub(super) type Names = (&'static [&'static str], &'static [&'static str]);
 
 impl Parts {
+    pub(super) fn starting_in(initial: usize) -> Self {
+        Parts { initial, ..Parts::default() }
+    }
+
     /// The locations that rows lead from and to.
     pub(super) fn connected(&self) -> impl Iterator<Item = usize> {
         self.rows.iter().flat_map(|row| [row.source, row.target])
