@@ -10,7 +10,7 @@ use pleach_guards::{Expression, Substitution, constant};
 use thiserror::Error;
 
 use crate::coordinates::Coordinate;
-use crate::outline;
+use crate::outline::{self, mapped};
 
 /// The flow of a location.
 ///
@@ -114,6 +114,14 @@ impl<S> Flow<S> {
         }
     }
 
+    /// The rates for whoever keeps them, unless the flow is a function.
+    pub(crate) fn shared_rates(&self) -> Option<Arc<[Rate]>> {
+        match &self.motion {
+            Motion::Rates(rates) => Some(rates.clone()),
+            Motion::Field(..) | Motion::Exact(..) => None,
+        }
+    }
+
     /// The name or the formulas, as text.
     pub fn name(&self) -> Cow<'_, str> {
         match &self.motion {
@@ -201,7 +209,7 @@ impl<S, const N: usize> From<[Rate<S>; N]> for Flow<S> {
 
 impl<S> From<Vec<Rate<S>>> for Flow<S> {
     fn from(rates: Vec<Rate<S>>) -> Self {
-        Flow::of_rates(rates.into_iter().map(Rate::untyped).collect())
+        Flow::of_rates(mapped(rates, Rate::untyped))
     }
 }
 

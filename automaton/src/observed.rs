@@ -244,7 +244,7 @@ impl<S> Exclusion<S> {
 
     /// The names in each group.
     pub(crate) fn names(&self) -> Vec<Vec<&str>> {
-        self.groups.iter().map(|group| group.iter().map(|it| &*it.name).collect()).collect()
+        names_in(&self.groups)
     }
 
     /// Two propositions of one group that are both true.
@@ -295,6 +295,10 @@ impl Operand {
             _ => None,
         }
     }
+}
+
+fn names_in(groups: &[Vec<Excluded>]) -> Vec<Vec<&str>> {
+    groups.iter().map(|group| group.iter().map(|it| &*it.name).collect()).collect()
 }
 
 fn number(names: &[&str], name: &str) -> Option<usize> {

@@ -86,7 +86,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
             let transition = &edge.weight;
             transitions.push(Transition {
                 source: edge.source().index(),
-                event: place_of(&self.events, transition.event),
+                event: place_of(&self.events, transition.event).unwrap_or_default(),
                 target: edge.target().index(),
                 urgency: transition.urgency,
                 priority: transition.priority,
@@ -98,7 +98,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
             modes,
             events: names_of(&self.events, E::name),
             transitions,
-            initial: place_of(&self.locations, self.initial),
+            initial: place_of(&self.locations, self.initial).unwrap_or_default(),
             initial_state: self.initial_state.as_ref().map(|state| state as &dyn Valuation),
             known: self.known.as_deref(),
             parameters: &self.parameters,
@@ -172,11 +172,21 @@ pub(crate) fn range_of(
     declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
 }
 
-/// The place of one that is among them: the builder sees to it.
-pub(crate) fn place_of<T: Copy + PartialEq>(all: &[T], one: T) -> usize {
-    all.iter().position(|listed| *listed == one).unwrap_or_default()
+/// The place of one among all.
+pub(crate) fn place_of<T: Copy + PartialEq>(all: &[T], one: T) -> Option<usize> {
+    all.iter().position(|listed| *listed == one)
 }
 
 pub(crate) fn names_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<&'static str> {
-    all.iter().map(|one| name(*one)).collect()
+    mapped(all, |one| name(*one))
+}
+
+/// What `collect` makes of a `map`, from a quarter of the code: it is compiled for the types of each
+/// automaton.
+pub(crate) fn mapped<A, B>(all: impl IntoIterator<Item = A>, change: impl Fn(A) -> B) -> Vec<B> {
+    let mut changed = Vec::new();
+    for one in all {
+        changed.push(change(one));
+    }
+    changed
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use pleach_guards::{EvaluationError, Expression, Substitution, Valuation};
 
 use crate::coordinates::Coordinates;
-use crate::outline::Effect;
+use crate::outline::{Effect, mapped};
 
 /// The reset of a transition.
 ///
@@ -149,6 +149,14 @@ impl<S> Reset<S> {
         }
     }
 
+    /// The assignments for whoever keeps them; none if the reset is a function.
+    pub(crate) fn shared_assignments(&self) -> Arc<[Assignment]> {
+        match &self.form {
+            Form::Assignments(assignments) => assignments.clone(),
+            Form::Function(_) => Arc::default(),
+        }
+    }
+
     pub(crate) fn outline(&self) -> Effect<'_> {
         match &self.form {
             Form::Assignments(assignments) => Effect::Assignments(assignments),
@@ -201,7 +209,7 @@ impl<S: Coordinates> Reset<S> {
 
 impl<S: Coordinates> From<Vec<Assignment<S>>> for Reset<S> {
     fn from(assignments: Vec<Assignment<S>>) -> Self {
-        Reset::of_assignments(assignments.into_iter().map(Assignment::untyped).collect())
+        Reset::of_assignments(mapped(assignments, Assignment::untyped))
     }
 }
 

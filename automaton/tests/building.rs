@@ -1,9 +1,11 @@
 //! What can be wrong with the parts of an automaton, and that the message names the place.
 
 use crate::common::{HEATER, Heater, Room, Sensed, at_once, cold, fine, heater, warm};
-use pleach_automaton::{Automaton, Builder, Flow, Reset};
+use pleach_automaton::{
+    Automaton, Builder, Current, Flow, Holds, Name, Reset, Transfer, from, places,
+};
 use pleach_discrete::{Row, TransitionTable, Urgency};
-use pleach_guards::{Guard, variable};
+use pleach_guards::{Guard, Valuation, always, variable};
 
 fn sound() -> Builder<Heater, Sensed, Room> {
     Automaton::builder(HEATER, Heater::Off).on(Sensed::Cold, cold(), Reset::identity()).on(
@@ -65,6 +67,60 @@ fn guards_and_invariants_read_variables_of_the_state() {
     assert_eq!(message(builder), text);
 }
 
+places! {
+    enum Door: DoorLocation {
+        Open(Open) = "open",
+        Shut(Shut) = "shut",
+    }
+}
+#[derive(Clone, Debug, PartialEq)]
+struct Open;
+#[derive(Clone, Debug, PartialEq)]
+struct Shut;
+
+#[derive(Debug)]
+struct Hall {
+    door: Current<Door>,
+}
+
+impl Valuation for Hall {
+    fn value(&self, _: &str) -> Option<f64> {
+        None
+    }
+}
+
+impl Holds<Door> for Hall {
+    type Effects = ();
+
+    fn current(&self) -> &Current<Door> {
+        &self.door
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Door> {
+        &mut self.door
+    }
+
+    fn carry_out(&mut self, (): ()) {}
+}
+
+#[test]
+fn a_guard_of_a_transfer_is_named_by_its_event() {
+    const TABLE: TransitionTable<DoorLocation, Sensed> = TransitionTable::new(&[
+        at_once(DoorLocation::Open, Sensed::Cold, DoorLocation::Shut),
+        at_once(DoorLocation::Shut, Sensed::Warm, DoorLocation::Open),
+    ]);
+    let shut = |_: &Open, _: &Hall, _: &mut ()| Shut;
+    let open = |_: &Shut, _: &Hall, _: &mut ()| Open;
+    let humid = variable("humidity").at_least(0.5);
+    let error = Automaton::builder(TABLE, DoorLocation::Open)
+        .carried_out(Transfer::new(Sensed::Cold, always(), "shut", shut))
+        .carried_out(Transfer::new(Sensed::Warm, humid, "open", open))
+        .build_for(&Hall { door: Current::new(Door::Open(Open)) })
+        .expect_err("there is no humidity");
+    let text = "the guard of `warm` names variable `humidity`, which the state does not have";
+    assert_eq!(error.to_string(), text);
+}
+
 #[test]
 fn guards_that_cannot_be_evaluated_are_named() {
     let damp = Guard::new("damp", variable("humidity").at_least(0.5));
@@ -111,6 +167,23 @@ fn transitions_come_in_total_order_and_may_be_asked_for() {
         step.expect("guards can be evaluated").is_some()
     };
     assert!(asked(Sensed::Warm) && !asked(Sensed::Cold));
+}
+
+/// The initial location comes first, then those of rows, of flows and of invariants.
+#[test]
+fn mentioned_locations_have_one_order_whatever_is_said_first() {
+    let [start, end, moving, limited] = ["start", "end", "moving", "limited"].map(Name::new);
+    let edge = || from(end).on(Name::new("return")).to(start).may(always());
+    let rest = || Flow::exact("rest", |_: &mut (), _| {});
+    let locations = |automaton: Builder<Name, Name, ()>| {
+        automaton.build().expect("the parts fit").locations().to_vec()
+    };
+    let begun = || Automaton::starting_in(start);
+    let expected = [start, end, moving, limited];
+    let forwards = begun().transition(edge()).flow(moving, rest()).invariant(limited, always());
+    assert_eq!(locations(forwards), expected);
+    let backwards = begun().invariant(limited, always()).flow(moving, rest()).transition(edge());
+    assert_eq!(locations(backwards), expected);
 }
 
 #[test]

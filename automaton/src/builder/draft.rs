@@ -1,146 +1,110 @@
-//! The parts of an automaton under construction without their types, and whether they fit together.
+//! Whether the parts of an automaton fit together.
 
-use std::ops::RangeInclusive;
+use petgraph::graph::{EdgeIndex, NodeIndex};
+use pleach_discrete::{Row, first_mentions};
+use pleach_guards::{Expression, Predicate, Valuation};
 
-use petgraph::graph::EdgeIndex;
-use pleach_discrete::{Event, Location};
-use pleach_guards::{Expression, Guard, Predicate, Valuation};
-
-use super::{BuildError, Builder, Names};
-use crate::flow::{Flow, Rate};
+use super::BuildError;
+use super::parts::{Given, Parts};
+use crate::flow::Rate;
 use crate::law::Command;
-use crate::outline::{Effect, Motion, names_of};
+use crate::outline::place_of;
 use crate::reset::NewValue;
 
-/// Locations and events are numbers here, in the order in which the automaton has them.
+/// The parts, with what the types of the automaton know of it.
 pub(super) struct Draft<'a> {
+    parts: &'a Parts,
+    /// The names of locations and events, by number.
     locations: Vec<&'static str>,
     events: Vec<&'static str>,
-    initial: usize,
-    rows: Vec<Row>,
-    /// For all rows of an event.
-    conditions: Vec<Given<'a>>,
-    /// For the rows with these numbers.
-    edges: Vec<Given<'a>>,
-    /// The rows that are carried out, and how; they become edges.
-    transfers: Vec<(Row, Given<'a>)>,
-    flows: Vec<(usize, Motion<'a>)>,
-    invariants: Vec<(usize, &'a Predicate)>,
-    commands: Vec<(usize, &'a Command)>,
-    throughout: &'a [Rate],
-    ranges: &'a [(String, RangeInclusive<f64>)],
-    parameters: &'a [(String, f64)],
+    /// The numbers of those that the automaton has, in its order.
+    pub(super) location_order: Vec<usize>,
+    pub(super) event_order: Vec<usize>,
+    /// For the rows with these numbers: edges, and transfers once their rows are found.
+    edges: Vec<(usize, &'a Given)>,
     exclusive: Vec<Vec<&'a str>>,
-    known: Option<&'a [&'static str]>,
-    observed: Option<Names>,
     initial_state: Option<&'a dyn Valuation>,
 }
 
-/// A row of the table.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Row {
-    source: usize,
-    event: usize,
-    target: usize,
-    priority: u8,
+/// Locations or events without their type.
+pub(super) struct Vocabulary<'a> {
+    /// By number.
+    pub(super) names: Vec<&'static str>,
+    /// How many the type lists: the first.
+    pub(super) listed: usize,
+    /// Whether others may be mentioned.
+    pub(super) is_open: bool,
+    /// The one with a number, as `Debug` prints it.
+    pub(super) debug: &'a dyn Fn(usize) -> String,
 }
 
-/// When a row, or each row of an event, may be taken, and what it does.
-#[derive(Clone, Copy)]
-struct Given<'a> {
-    number: usize,
-    guard: &'a Guard,
-    effect: Effect<'a>,
+/// What is said of a location.
+pub(super) struct Said<'a> {
+    /// How the coordinates change, with what changes throughout; none if nothing is said, or by a
+    /// function.
+    pub(super) rates: Option<Vec<Rate>>,
+    /// The number of the flow.
+    pub(super) flow: Option<usize>,
+    pub(super) invariant: Option<&'a Predicate>,
+    pub(super) commands: Vec<Command>,
 }
 
-/// Where guard and reset of a row are given.
-#[derive(Clone, Copy)]
-pub(super) enum Origin {
-    Condition(usize),
-    Edge(usize),
-    Transfer(usize),
-}
-
-impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
-    /// The parts with these locations and events for numbers.
-    ///
-    /// # Errors
-    ///
-    /// [`BuildError`] where a location or an event is not among them.
-    pub(super) fn draft(&self, locations: &[L], events: &[E]) -> Result<Draft<'_>, BuildError> {
-        let location = |one: L| {
-            let place = locations.iter().position(|listed| *listed == one);
-            place.ok_or_else(|| BuildError::UnlistedLocation { location: format!("{one:?}") })
-        };
-        let event = |one: E| {
-            let place = events.iter().position(|listed| *listed == one);
-            place.ok_or_else(|| BuildError::UnlistedEvent { event: format!("{one:?}") })
-        };
-        let row = |source: L, taken: E, target: L, priority: u8| -> Result<Row, BuildError> {
-            let (source, target) = (location(source)?, location(target)?);
-            Ok(Row { source, event: event(taken)?, target, priority })
-        };
-        let mut draft = Draft {
-            locations: names_of(locations, L::name),
-            events: names_of(events, E::name),
-            initial: location(self.initial)?,
-            rows: Vec::with_capacity(self.rows.len()),
-            conditions: Vec::with_capacity(self.conditions.len()),
-            edges: Vec::with_capacity(self.edges.len()),
-            transfers: Vec::with_capacity(self.transfers.len()),
-            flows: Vec::with_capacity(self.flows.len()),
-            invariants: Vec::with_capacity(self.invariants.len()),
-            commands: Vec::with_capacity(self.commands.len()),
-            throughout: &self.throughout,
-            ranges: &self.ranges,
-            parameters: &self.parameters,
-            exclusive: self.exclusion.names(),
-            known: self.known.as_deref(),
-            observed: self.observed,
-            initial_state: self.initial_state.as_ref().map(|state| state as &dyn Valuation),
-        };
-        for one in &self.rows {
-            draft.rows.push(row(one.source, one.event, one.target, one.priority)?);
-        }
-        for (place, flow) in &self.flows {
-            draft.flows.push((location(*place)?, Flow::outline(flow)));
-        }
-        for (place, invariant) in &self.invariants {
-            draft.invariants.push((location(*place)?, invariant));
-        }
-        for (place, command) in &self.commands {
-            draft.commands.push((location(*place)?, command));
-        }
-        for (number, guard, reset) in &self.edges {
-            draft.edges.push(Given { number: *number, guard, effect: reset.outline() });
-        }
-        for (taken, guard, reset) in &self.conditions {
-            let Some(number) = events.iter().position(|listed| listed == taken) else {
-                return Err(without_row(guard, taken.name()));
-            };
-            draft.conditions.push(Given { number, guard, effect: reset.outline() });
-        }
-        for one in &self.transfers {
-            let (source, event, target) = (one.source, one.event, one.target);
-            let Ok(row) = row(source, event, target, 0) else {
-                return Err(BuildError::TransferWithoutRow {
-                    source_location: source.name(),
-                    event: event.name(),
-                    target: target.name(),
-                });
-            };
-            let (guard, effect) = (&one.guard, one.reset.outline());
-            draft.transfers.push((row, Given { number: 0, guard, effect }));
-        }
-        Ok(draft)
+impl Vocabulary<'_> {
+    /// The numbers of those that an automaton has: all that are listed, and in an open vocabulary
+    /// those that are mentioned.
+    fn order(&self, mentioned: impl Iterator<Item = usize>) -> Vec<usize> {
+        let listed = 0..self.listed;
+        if self.is_open { first_mentions(listed.chain(mentioned)) } else { listed.collect() }
     }
 }
 
-fn without_row(guard: &Guard, event: &'static str) -> BuildError {
-    BuildError::GuardWithoutRow { guard: guard.name().to_owned(), event }
-}
-
 impl<'a> Draft<'a> {
+    /// The draft of these parts.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError`] where a location or an event is not in its vocabulary.
+    pub(super) fn of(
+        parts: &'a Parts,
+        locations: Vocabulary<'_>,
+        events: Vocabulary<'_>,
+        exclusive: Vec<Vec<&'a str>>,
+        initial_state: Option<&'a dyn Valuation>,
+    ) -> Result<Self, BuildError> {
+        let mentioned = [parts.initial].into_iter().chain(parts.connected());
+        let mentioned = mentioned.chain(parts.described()).chain(parts.restricted());
+        let location_order = locations.order(mentioned);
+        let event_order = events.order(parts.rows.iter().map(|row| row.event));
+        let location = |number: usize| match location_order.contains(&number) {
+            true => Ok(()),
+            false => Err(BuildError::UnlistedLocation { location: (locations.debug)(number) }),
+        };
+        let event = |number: usize| match event_order.contains(&number) {
+            true => Ok(()),
+            false => Err(BuildError::UnlistedEvent { event: (events.debug)(number) }),
+        };
+        location(parts.initial)?;
+        for row in &parts.rows {
+            location(row.source)?;
+            location(row.target)?;
+            event(row.event)?;
+        }
+        let commanded = parts.commands.iter().map(|(location, _)| *location);
+        for number in parts.described().chain(parts.restricted()).chain(commanded) {
+            location(number)?;
+        }
+        Ok(Draft {
+            parts,
+            locations: locations.names,
+            events: events.names,
+            location_order,
+            event_order,
+            edges: parts.edges.iter().map(|(row, given)| (*row, given)).collect(),
+            exclusive,
+            initial_state,
+        })
+    }
+
     /// Whether all parts fit together.
     ///
     /// # Errors
@@ -153,8 +117,9 @@ impl<'a> Draft<'a> {
         self.check_parts()?;
         self.check_intervals()?;
         self.check_rates()?;
-        if let Some(names) = self.known {
-            let is_parameter = |name: &str| self.parameters.iter().any(|(known, _)| known == name);
+        let Parts { known, observed, parameters, .. } = self.parts;
+        if let Some(names) = known {
+            let is_parameter = |name: &str| parameters.iter().any(|(known, _)| known == name);
             self.check_parameters(names)?;
             self.check_variables(&|name| names.contains(&name) || is_parameter(name))?;
             self.check_initial_state(names)?;
@@ -162,7 +127,7 @@ impl<'a> Draft<'a> {
                 self.check_propositions(&|name| state.truth(name).is_some())?;
             }
         }
-        if let Some((variables, propositions)) = self.observed {
+        if let Some((variables, propositions)) = observed {
             self.check_variables(&|name| variables.contains(&name))?;
             self.check_propositions(&|name| propositions.contains(&name))?;
         }
@@ -170,67 +135,66 @@ impl<'a> Draft<'a> {
     }
 
     fn check_table(&self) -> Result<(), BuildError> {
-        let has_own = |number: usize| self.edges.iter().any(|edge| edge.number == number);
-        for (number, row) in self.rows.iter().enumerate() {
-            let same = |earlier: &Row| (earlier.source, earlier.event) == (row.source, row.event);
-            let mut earlier = (0..number).filter(|&earlier| same(&self.rows[earlier]));
+        let Parts { rows, initial, .. } = self.parts;
+        let has_own = |number: usize| self.edges.iter().any(|(edge, _)| *edge == number);
+        let leaves = |row: &Row<usize, usize>| (row.source, row.event);
+        for (number, row) in rows.iter().enumerate() {
+            let mut earlier = (0..number).filter(|&earlier| leaves(&rows[earlier]) == leaves(row));
             if earlier.any(|earlier| !(has_own(earlier) && has_own(number))) {
                 let (location, event) = (self.locations[row.source], self.events[row.event]);
                 return Err(BuildError::Nondeterministic { location, event });
             }
         }
-        let occurs = self.rows.iter().any(|row| [row.source, row.target].contains(&self.initial));
-        if !self.rows.is_empty() && !occurs {
-            return Err(BuildError::InitialNotInTable { location: self.locations[self.initial] });
+        if !rows.is_empty() && !self.parts.connected().any(|location| location == *initial) {
+            return Err(BuildError::InitialNotInTable { location: self.locations[*initial] });
         }
         Ok(())
     }
 
     /// Finds the row of every transfer, and a transfer for every row if there are any.
     fn match_transfers(&mut self) -> Result<(), BuildError> {
-        for number in 0..self.transfers.len() {
-            let Row { source, event, target, .. } = self.transfers[number].0;
-            let fits = |row: &Row| (row.source, row.event, row.target) == (source, event, target);
-            let row = self.rows.iter().position(fits).ok_or(BuildError::TransferWithoutRow {
-                source_location: self.locations[source],
-                event: self.events[event],
-                target: self.locations[target],
+        let Parts { rows, transfers, .. } = self.parts;
+        for (ends @ [source, event, target], given) in transfers {
+            let fits = |row: &Row<_, _>| [row.source, row.event, row.target] == *ends;
+            let row = rows.iter().position(fits).ok_or(BuildError::TransferWithoutRow {
+                source_location: self.locations[*source],
+                event: self.events[*event],
+                target: self.locations[*target],
             })?;
-            let earlier = self.transfers[..number].iter().map(|(_, given)| given);
-            if self.edges.iter().chain(earlier).any(|given| given.number == row) {
-                return Err(BuildError::GivenTwice { place: self.events[event], part: "transfer" });
+            if self.edges.iter().any(|(edge, _)| *edge == row) {
+                return Err(BuildError::GivenTwice {
+                    place: self.events[*event],
+                    part: "transfer",
+                });
             }
-            self.transfers[number].1.number = row;
+            self.edges.push((row, given));
         }
-        let lacks = |number: &usize| self.origin(*number).is_none();
-        let are_given = !(self.edges.is_empty() && self.transfers.is_empty());
-        match (0..self.rows.len()).find(lacks).filter(|_| are_given) {
+        let lacks = |number: &usize| self.given_for(*number).is_err();
+        match (0..rows.len()).find(lacks).filter(|_| !self.edges.is_empty()) {
             Some(number) => Err(BuildError::RowWithoutTransfer {
-                location: self.locations[self.rows[number].source],
-                event: self.events[self.rows[number].event],
+                location: self.locations[rows[number].source],
+                event: self.events[rows[number].event],
             }),
             None => Ok(()),
         }
     }
 
     fn check_parts(&self) -> Result<(), BuildError> {
-        for condition in &self.conditions {
-            if !self.rows.iter().any(|row| row.event == condition.number) {
-                return Err(without_row(condition.guard, self.events[condition.number]));
+        for (event, Given { guard, .. }) in &self.parts.conditions {
+            if !self.parts.rows.iter().any(|row| row.event == *event) {
+                let (guard, event) = (guard.name().to_owned(), self.events[*event]);
+                return Err(BuildError::GuardWithoutRow { guard, event });
             }
         }
-        let events = self.conditions.iter().map(|condition| condition.number);
-        let described = self.flows.iter().map(|(location, _)| *location);
-        let restricted = self.invariants.iter().map(|(location, _)| *location);
-        once(events, "guard", &self.events)?;
-        once(described, "flow", &self.locations)?;
-        once(restricted, "invariant", &self.locations)
+        once(self.parts.conditions.iter().map(|(event, _)| *event), "guard", &self.events)?;
+        once(self.parts.described(), "flow", &self.locations)?;
+        once(self.parts.restricted(), "invariant", &self.locations)
     }
 
     /// Intervals between two numbers hold some; of others this is known when they are used.
     fn check_intervals(&self) -> Result<(), BuildError> {
-        for (event, Given { effect, .. }) in self.given() {
-            for one in effect.assignments().into_iter().flatten() {
+        for (event, given) in self.given() {
+            for one in given.assignments.iter() {
                 let NewValue::Within(Expression::Constant(lower), Expression::Constant(upper)) =
                     one.value()
                 else {
@@ -247,17 +211,19 @@ impl<'a> Draft<'a> {
 
     /// What changes throughout can be added to every flow.
     fn check_rates(&self) -> Result<(), BuildError> {
-        let function = self.flows.iter().find(|(_, flow)| flow.rates().is_none());
-        match function.filter(|_| !self.throughout.is_empty()) {
+        let Parts { flows, throughout, .. } = self.parts;
+        let function = flows.iter().find(|(_, rates)| rates.is_none());
+        match function.filter(|_| !throughout.is_empty()) {
             Some((location, _)) => Err(BuildError::NoRates { location: self.locations[*location] }),
             None => Ok(()),
         }
     }
 
     fn check_parameters(&self, names: &[&'static str]) -> Result<(), BuildError> {
-        for (position, (name, value)) in self.parameters.iter().enumerate() {
+        let Parts { parameters, .. } = self.parts;
+        for (position, (name, value)) in parameters.iter().enumerate() {
             let is_taken = names.contains(&name.as_str())
-                || self.parameters[..position].iter().any(|(other, _)| other == name);
+                || parameters[..position].iter().any(|(other, _)| other == name);
             if is_taken {
                 return Err(BuildError::ParameterNameTaken { parameter: name.clone() });
             }
@@ -288,7 +254,7 @@ impl<'a> Draft<'a> {
                 return Err(BuildError::CoordinateTwice { place, part, coordinate });
             }
         }
-        for (variable, range) in self.ranges {
+        for (variable, range) in &self.parts.ranges {
             let (variable, lower, upper) = (variable.clone(), *range.start(), *range.end());
             if !is_known(&variable) {
                 return Err(BuildError::RangeOfUnknownVariable { variable });
@@ -313,9 +279,9 @@ impl<'a> Draft<'a> {
 
     fn check_propositions(&self, is_known: &dyn Fn(&str) -> bool) -> Result<(), BuildError> {
         let guards = self.given().map(|(event, given)| (event, given.guard.predicate()));
-        let invariants = self.invariants.iter();
-        let invariants = invariants.map(|(location, one)| (self.locations[*location], *one));
-        let commands = self.commands.iter();
+        let invariants = self.parts.invariants.iter();
+        let invariants = invariants.map(|(location, one)| (self.locations[*location], one));
+        let commands = self.parts.commands.iter();
         let commands = commands.map(|(location, one)| (self.locations[*location], &one.guard));
         let unknown = self.exclusive.iter().flatten().find(|name| !is_known(name));
         if let Some(&name) = unknown {
@@ -331,30 +297,32 @@ impl<'a> Draft<'a> {
     }
 
     /// Guards and resets, each with its event.
-    fn given(&self) -> impl Iterator<Item = (&'static str, Given<'a>)> {
-        let of_row = |given: &Given<'a>| (self.events[self.rows[given.number].event], *given);
-        let conditions = self.conditions.iter().map(|given| (self.events[given.number], *given));
-        let transfers = self.transfers.iter().map(|(_, given)| given);
-        conditions.chain(self.edges.iter().chain(transfers).map(of_row))
+    fn given(&self) -> impl Iterator<Item = (&'static str, &'a Given)> {
+        let Parts { rows, conditions, edges, transfers, .. } = self.parts;
+        let conditions = conditions.iter().map(|(event, given)| (*event, given));
+        let edges = edges.iter().map(|(row, given)| (rows[*row].event, given));
+        let transfers = transfers.iter().map(|([_, event, _], given)| (*event, given));
+        let given = conditions.chain(edges).chain(transfers);
+        given.map(|(event, given)| (self.events[event], given))
     }
 
     fn formulas(&self) -> Vec<Part> {
         let mut parts = Vec::new();
-        for (event, Given { guard, effect, .. }) in self.given() {
-            parts.push(Part::reading(event, "guard", guard.predicate()));
-            let assignments = effect.assignments().into_iter().flatten();
+        for (event, given) in self.given() {
+            parts.push(Part::reading(event, "guard", given.guard.predicate()));
+            let assignments = given.assignments.iter();
             let assigned = assignments.map(|one| (one.coordinate(), one.value().formulas()));
             parts.push(Part::giving(event, "reset", assigned));
         }
-        for (location, name) in self.locations.iter().enumerate() {
+        for &location in &self.location_order {
             let rates = self.rates(location).unwrap_or_default();
             let given = rates.iter().map(|one| (one.coordinate(), std::iter::once(one.rate())));
-            parts.push(Part::giving(name, "flow", given));
+            parts.push(Part::giving(self.locations[location], "flow", given));
         }
-        for (location, invariant) in &self.invariants {
+        for (location, invariant) in &self.parts.invariants {
             parts.push(Part::reading(self.locations[*location], "invariant", invariant));
         }
-        for (location, command) in &self.commands {
+        for (location, command) in &self.parts.commands {
             parts.push(Part::reading(self.locations[*location], "law", &command.guard));
         }
         parts
@@ -362,38 +330,62 @@ impl<'a> Draft<'a> {
 
     /// How the coordinates change in a location, with what changes throughout; none if nothing is
     /// said, or by a function.
-    pub(super) fn rates(&self, location: usize) -> Option<Vec<Rate>> {
-        let flow = self.flows.iter().find(|(place, _)| *place == location);
-        let own = match flow {
-            Some((_, flow)) => flow.rates()?,
-            None if self.throughout.is_empty() => return None,
+    fn rates(&self, location: usize) -> Option<Vec<Rate>> {
+        let Parts { flows, throughout, .. } = self.parts;
+        let own = match flows.iter().find(|(place, _)| *place == location) {
+            Some((_, rates)) => rates.as_deref()?,
+            None if throughout.is_empty() => return None,
             None => &[],
         };
-        Some(own.iter().chain(self.throughout).cloned().collect())
+        Some(own.iter().chain(throughout).cloned().collect())
     }
 
-    /// The locations that a row leads from and to.
-    pub(super) fn ends(&self, number: usize) -> [usize; 2] {
-        [self.rows[number].source, self.rows[number].target]
+    /// When a row may be taken, and what it does: given for itself, or for its event.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError::EventWithoutGuard`] if it is given for neither.
+    pub(super) fn given_for(&self, number: usize) -> Result<&'a Given, BuildError> {
+        let Row { event, .. } = self.parts.rows[number];
+        let of_row = self.edges.iter().find(|(row, _)| *row == number).map(|(_, given)| *given);
+        let mut conditions = self.parts.conditions.iter();
+        let of_event = || conditions.find(|(taken, _)| *taken == event).map(|(_, given)| given);
+        let without_guard = BuildError::EventWithoutGuard { event: self.events[event] };
+        of_row.or_else(of_event).ok_or(without_guard)
     }
 
-    /// Where guard and reset of a row are given: for itself, or for its event.
-    pub(super) fn origin(&self, number: usize) -> Option<Origin> {
-        let is_of_row = |given: &Given<'_>| given.number == number;
-        let is_of_event = |given: &Given<'_>| given.number == self.rows[number].event;
-        let edge = || self.edges.iter().position(is_of_row).map(Origin::Edge);
-        let transfers = || self.transfers.iter().position(|(_, given)| is_of_row(given));
-        let condition = || self.conditions.iter().position(is_of_event).map(Origin::Condition);
-        edge().or_else(|| transfers().map(Origin::Transfer)).or_else(condition)
+    /// What is said of a location.
+    pub(super) fn said(&self, location: usize) -> Said<'a> {
+        let Parts { invariants, commands, .. } = self.parts;
+        let invariant = invariants.iter().find(|(place, _)| *place == location);
+        let commands = commands.iter().filter(|(place, _)| *place == location);
+        Said {
+            rates: self.rates(location),
+            flow: self.parts.described().position(|place| place == location),
+            invariant: invariant.map(|(_, invariant)| invariant),
+            commands: commands.map(|(_, command)| command.clone()).collect(),
+        }
     }
 
-    /// The rows that leave a location, in their total order; edges have the numbers of their rows.
-    pub(super) fn leaving(&self, location: usize) -> Vec<EdgeIndex> {
-        let rows = &self.rows;
-        let mut numbers: Vec<usize> =
-            (0..rows.len()).filter(|&number| rows[number].source == location).collect();
-        numbers.sort_by_key(|&number| (rows[number].priority, number));
-        numbers.into_iter().map(EdgeIndex::new).collect()
+    /// By location the rows that leave it, in their total order; edges have the numbers of their
+    /// rows.
+    pub(super) fn leaving(&self) -> Vec<Vec<EdgeIndex>> {
+        let Parts { rows, .. } = self.parts;
+        let leaving = |&location: &usize| {
+            let mut numbers: Vec<usize> =
+                (0..rows.len()).filter(|&number| rows[number].source == location).collect();
+            numbers.sort_by_key(|&number| (rows[number].priority, number));
+            numbers.into_iter().map(EdgeIndex::new).collect()
+        };
+        self.location_order.iter().map(leaving).collect()
+    }
+
+    /// The nodes of the locations that a row leads from and to.
+    pub(super) fn ends(&self, number: usize) -> [NodeIndex; 2] {
+        let Row { source, target, .. } = self.parts.rows[number];
+        // Every location of a row has a place.
+        let place = |location| place_of(&self.location_order, location).unwrap_or_default();
+        [source, target].map(|location| NodeIndex::new(place(location)))
     }
 }
 
