@@ -1,7 +1,8 @@
 //! A tree of boxes over edges: the questions that are asked of outlines with thousands of edges.
 
-use parry2d_f64::bounding_volume::Aabb;
-use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhLeafCost, BvhNode, TraversalAction};
+use bvh::aabb::{Aabb, Bounded};
+use bvh::bounding_hierarchy::BHShape;
+use bvh::bvh::{Bvh, BvhNode};
 
 use super::Segment;
 use super::segment::side;
@@ -15,15 +16,18 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 #[derive(Debug, Clone)]
 pub(super) struct EdgeTree {
     edges: Vec<Segment>,
-    boxes: Bvh,
+    /// The box around all edges, if there are any.
+    around: Option<Bounds>,
+    boxes: Bvh<f64, 2>,
 }
 
 impl EdgeTree {
     pub(super) fn new(edges: impl IntoIterator<Item = Segment>) -> EdgeTree {
         let edges: Vec<Segment> = edges.into_iter().collect();
-        let leaves = edges.iter().map(|edge| Bounds::of(edge).into()).enumerate();
-        let boxes = Bvh::from_iter(BvhBuildStrategy::Binned, leaves);
-        EdgeTree { edges, boxes }
+        let mut leaves: Vec<Bounds> = edges.iter().map(Bounds::of).collect();
+        let around = leaves.iter().copied().reduce(Bounds::union);
+        let boxes = Bvh::build(&mut leaves);
+        EdgeTree { edges, around, boxes }
     }
 
     pub(super) fn edges(&self) -> &[Segment] {
@@ -48,7 +52,7 @@ impl EdgeTree {
 
     /// Whether `point` lies in the box around all edges.
     pub(super) fn surrounds(&self, point: Point) -> bool {
-        !self.edges.is_empty() && Bounds::from(self.boxes.root_aabb()).holds(point)
+        self.around.is_some_and(|around| around.holds(point))
     }
 
     /// Visits every edge that a ray from `point` to the right crosses, by its index. Exact, but for
@@ -77,21 +81,18 @@ impl EdgeTree {
 
     /// The nearest edge, by its index, and its point nearest to `point`.
     pub(super) fn nearest(&self, point: Point) -> Option<(usize, Point)> {
-        let nearest = self.best(
+        let (_, index) = self.least(
             |bounds| bounds.distance_squared(point),
-            |edge| {
-                let nearest = edge.nearest(point);
-                ((nearest - point).norm_squared(), nearest)
-            },
-        );
-        nearest.map(|(index, (_, nearest))| (index, nearest))
+            |edge| (edge.nearest(point) - point).norm_squared(),
+        )?;
+        Some((index, self.edges[index].nearest(point)))
     }
 
     /// Distance from `path` to the nearest edge; 0 if they meet, infinite without edges.
     pub(super) fn distance_to_segment(&self, path: &Segment) -> f64 {
         let around = Bounds::of(path);
-        let nearest = self.best(|bounds| bounds.gap(&around), |edge| edge.distance_to(path));
-        nearest.map_or(f64::INFINITY, |(_, distance)| distance)
+        let nearest = self.least(|bounds| bounds.gap(&around), |edge| edge.distance_to(path));
+        nearest.map_or(f64::INFINITY, |(distance, _)| distance)
     }
 
     /// Whether `path` meets an edge or comes closer to one than `distance`.
@@ -140,19 +141,50 @@ impl EdgeTree {
         );
     }
 
-    /// The edge of least cost, by its index, with its cost; that of a box is no more than the cost
-    /// of any edge in it.
-    fn best<C: BvhLeafCost>(
+    /// The least cost of an edge, with the first edge that has it, by its index; the cost of a box
+    /// is no more than that of any edge in it.
+    fn least(
         &self,
         of_box: impl Fn(&Bounds) -> f64,
-        of_edge: impl Fn(&Segment) -> C,
-    ) -> Option<(usize, C)> {
-        let best = self.boxes.find_best(
-            f64::MAX,
-            |node, _| of_box(&node.into()),
-            |leaf, _| Some(of_edge(&self.edges[leaf as usize])),
-        );
-        best.map(|(leaf, cost)| (leaf as usize, cost))
+        of_edge: impl Fn(&Segment) -> f64,
+    ) -> Option<(f64, usize)> {
+        let mut least = None;
+        if !self.edges.is_empty() {
+            self.lower(&mut least, 0, &of_box, &of_edge);
+        }
+        least
+    }
+
+    /// Replaces the least cost so far by that of an edge below a node, if one has less.
+    fn lower(
+        &self,
+        least: &mut Option<(f64, usize)>,
+        node: usize,
+        of_box: &impl Fn(&Bounds) -> f64,
+        of_edge: &impl Fn(&Segment) -> f64,
+    ) {
+        match &self.boxes.nodes[node] {
+            BvhNode::Leaf { shape_index: index, .. } => {
+                let found = (of_edge(&self.edges[*index]), *index);
+                if least.is_none_or(|least| found < least) {
+                    *least = Some(found);
+                }
+            }
+            BvhNode::Node { child_l_index, child_l_aabb, child_r_index, child_r_aabb, .. } => {
+                let mut children = [
+                    (of_box(&child_l_aabb.into()), *child_l_index),
+                    (of_box(&child_r_aabb.into()), *child_r_index),
+                ];
+                if children[1].0 < children[0].0 {
+                    children.reverse();
+                }
+                for (cost, child) in children {
+                    if least.is_none_or(|(least, _)| cost <= least) {
+                        self.lower(least, child, of_box, of_edge);
+                    }
+                }
+            }
+        }
     }
 
     /// Visits the edges below every box that `enter` admits, until `visit` says that one settles
@@ -162,18 +194,23 @@ impl EdgeTree {
         mut enter: impl FnMut(&Bounds) -> bool,
         mut visit: impl FnMut(usize, &Segment) -> bool,
     ) -> bool {
-        let mut is_settled = false;
-        self.boxes.traverse(|node| {
-            if !enter(&node.into()) {
-                return TraversalAction::Prune;
+        self.around.is_some_and(|around| enter(&around))
+            && self.any_below(0, &mut enter, &mut visit)
+    }
+
+    fn any_below(
+        &self,
+        node: usize,
+        enter: &mut impl FnMut(&Bounds) -> bool,
+        visit: &mut impl FnMut(usize, &Segment) -> bool,
+    ) -> bool {
+        match &self.boxes.nodes[node] {
+            BvhNode::Leaf { shape_index: index, .. } => visit(*index, &self.edges[*index]),
+            BvhNode::Node { child_l_index, child_l_aabb, child_r_index, child_r_aabb, .. } => {
+                enter(&child_l_aabb.into()) && self.any_below(*child_l_index, enter, visit)
+                    || enter(&child_r_aabb.into()) && self.any_below(*child_r_index, enter, visit)
             }
-            is_settled = node.leaf_data().is_some_and(|leaf| {
-                let index = leaf as usize;
-                visit(index, &self.edges[index])
-            });
-            if is_settled { TraversalAction::EarlyExit } else { TraversalAction::Continue }
-        });
-        is_settled
+        }
     }
 }
 
@@ -184,22 +221,24 @@ pub(super) struct Bounds {
     high: Point,
 }
 
-impl From<&BvhNode> for Bounds {
-    fn from(node: &BvhNode) -> Bounds {
-        node.aabb().into()
+impl From<&Aabb<f64, 2>> for Bounds {
+    fn from(corners: &Aabb<f64, 2>) -> Bounds {
+        Bounds { low: corners.min, high: corners.max }
     }
 }
 
-impl From<Aabb> for Bounds {
-    fn from(Aabb { mins, maxs }: Aabb) -> Bounds {
-        Bounds { low: Point::new(mins.x, mins.y), high: Point::new(maxs.x, maxs.y) }
+impl Bounded<f64, 2> for Bounds {
+    fn aabb(&self) -> Aabb<f64, 2> {
+        Aabb::with_bounds(self.low, self.high)
     }
 }
 
-impl From<Bounds> for Aabb {
-    fn from(Bounds { low, high }: Bounds) -> Aabb {
-        let corner = |corner: Point| parry2d_f64::math::Vector::new(corner.x, corner.y);
-        Aabb::new(corner(low), corner(high))
+impl BHShape<f64, 2> for Bounds {
+    // Needed to change a tree, which is not done.
+    fn set_bh_node_index(&mut self, _: usize) {}
+
+    fn bh_node_index(&self) -> usize {
+        0
     }
 }
 
@@ -215,10 +254,12 @@ impl Bounds {
     /// The smallest box around some points.
     pub(super) fn around(points: impl Iterator<Item = Point>) -> Option<Bounds> {
         let alone = |point| Bounds { low: point, high: point };
-        points.map(alone).reduce(|one, other| Bounds {
-            low: one.low.inf(&other.low),
-            high: one.high.sup(&other.high),
-        })
+        points.map(alone).reduce(Bounds::union)
+    }
+
+    /// The smallest box around two.
+    fn union(self, other: Bounds) -> Bounds {
+        Bounds { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
     /// The box with its sides moved outwards.
@@ -305,6 +346,38 @@ mod tests {
             (bounds((0.5, 0.5), (2.0, 2.0)), 0.0),
         ] {
             assert_eq!((own.gap(&other), other.gap(&own)), (gap, gap));
+        }
+    }
+
+    #[test]
+    fn a_tree_without_edges_has_none_near() {
+        let tree = EdgeTree::new([]);
+        let (origin, away) = (Point::origin(), Point::new(1.0, 1.0));
+        assert!(tree.nearest(origin).is_none() && tree.distance(origin).is_infinite());
+        assert!(!tree.surrounds(origin) && !tree.is_crossed_by(&Segment::new(origin, away)));
+    }
+
+    #[test]
+    fn a_single_edge_overlaps_what_meets_its_box() {
+        let edge = Segment::new(Point::new(1.0, 0.0), Point::new(1.0, 2.0));
+        let tree = EdgeTree::new([edge]);
+        assert_eq!(tree.nearest(Point::origin()), Some((0, edge.from)));
+        for (reach, expected) in [(0.5, 0), (1.0, 1)] {
+            let mut met = 0;
+            let path = Segment::new(Point::origin(), Point::new(reach, 0.0));
+            tree.for_each_overlapping(&path, |_, _| met += 1);
+            assert_eq!(met, expected);
+        }
+    }
+
+    #[test]
+    fn of_several_nearest_edges_the_first_counts() {
+        let ends = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let corners = ends.map(|(x, y)| Point::new(x, y));
+        for shift in 0..4 {
+            let corner = |at: usize| corners[(at + shift) % 4];
+            let tree = EdgeTree::new((0..4).map(|at| Segment::new(corner(at), corner(at + 1))));
+            assert_eq!(tree.nearest(Point::new(0.5, 0.5)).unwrap().0, 0);
         }
     }
 }

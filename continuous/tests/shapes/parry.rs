@@ -1,5 +1,12 @@
 //! Distances against parry, an independent library of shapes: clearance, separation, neighbours.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+#[path = "../geometry/environments.rs"]
+#[allow(dead_code, reason = "other tests use more of it")]
+mod environments;
+
+use environments::{environment, place};
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Vector as Arrow};
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -8,8 +15,6 @@ use parry2d_f64::shape::{Capsule as Pill, Polyline, Segment as Line, Shape};
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{Capsule, Neighbours, Segment, Workspace};
 use proptest::prelude::*;
-
-use super::environments::{environment, place};
 
 /// The accuracy of parry for the distance of two shapes; that of a point is exact to rounding.
 const ACCURACY: f64 = 1e-6;
