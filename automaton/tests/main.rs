@@ -17,6 +17,7 @@ mod first_roots;
 mod flights;
 mod guarantees;
 mod kinks;
+mod lines_and_curves;
 mod literature;
 mod machines;
 mod magnitudes;

@@ -136,6 +136,120 @@ fn messages_arrive_in_the_order_in_which_they_are_sent() {
     }
 }
 
+coordinates! {
+    struct Notes { number = "m", time = "t", numbers = "sum of m", times = "sum of t", count = "n" }
+}
+
+/// Of each message it adds the number and the time that it carries to what came before.
+fn clerk() -> Automaton<Receiver, Hear, Notes> {
+    let Notes { number, time, numbers, times, count } = Notes::coordinates();
+    let sums = [
+        numbers.becomes(10.0 * &numbers + &number),
+        times.becomes(10.0 * &times + &time),
+        count.becomes(&count + 1.0),
+    ];
+    let state = Notes { number: 0.0, time: 0.0, numbers: 0.0, times: 0.0, count: 0.0 };
+    Automaton::starting_in(Listening)
+        .initially(state)
+        .transition(from(Listening).on(Hear::Hear).to(Listening).may(always()).then(sums))
+        .build()
+        .expect("the clerk is sound")
+}
+
+/// A sender that tells at 1 s, 2 s, … the numbers 0, 1, …, and a clerk.
+fn office(channel: Channel) -> Composition {
+    let Source { clock, value } = Source::coordinates();
+    let tell = from(Sending).on(Say::Tell).to(Sending).must(clock.at_least(&value + 1.0));
+    let sender = Automaton::starting_in(Sending)
+        .initially(Source { clock: 0.0, value: 0.0 })
+        .flow(Sending, clock.rate(1.0))
+        .transition(tell.then(value.becomes(&value + 1.0)))
+        .build()
+        .expect("the sender is sound");
+    let parts = Composition::builder().add("a", &sender).add("b", &clerk());
+    let channel = channel.carrying("a.x", "b.m").carrying("a.τ", "b.t");
+    parts.channel(channel).build().expect("the parts fit")
+}
+
+/// Digit by digit: the numbers and the times of all messages that have been heard.
+#[test]
+fn each_content_of_a_message_comes_to_its_own_reader() {
+    for held in 1..=4 {
+        let delay = f64::from(held) - 0.5;
+        let channel = Channel::new("a.tell", "b.hear").holding(held as usize);
+        let office = office(channel.taking(delay, delay));
+        let trajectory = run(&office, Policy::Late, 4.75 + delay);
+        let read = ["b.n", "b.sum of m", "b.sum of t"].map(|it| trajectory.value(it, 4.75 + delay));
+        assert_eq!(read, [Some(4.0), Some(123.0), Some(1234.0)], "{held} at a time");
+    }
+}
+
+#[test]
+fn of_what_a_lossy_channel_carries_the_rest_arrives_in_order() {
+    let mut lost = 0;
+    for seed in 0..20 {
+        let channel = Channel::new("a.tell", "b.hear").taking(0.25, 2.0).holding(3).losing();
+        let trajectory = run(&office(channel), Policy::Random { seed }, 9.5);
+        assert_eq!(trajectory.ending().reason, Reason::Horizon);
+        let [count, numbers, times] = ["b.n", "b.sum of m", "b.sum of t"]
+            .map(|it| trajectory.value(it, 9.5).expect("a value"));
+        let digit = |all: f64, place: i32| (all / 10f64.powi(place)).floor() % 10.0;
+        let notes: Vec<f64> = (0..count as i32).rev().map(|place| digit(numbers, place)).collect();
+        let stamps = (0..count as i32).rev().map(|place| digit(times, place) - 1.0);
+        assert!(stamps.eq(notes.iter().copied()), "both are of one message: {numbers}, {times}");
+        assert!(notes.windows(2).all(|pair| pair[0] < pair[1]), "{notes:?}");
+        lost += 9 - notes.len();
+    }
+    assert!(lost > 0, "none is lost");
+}
+
+/// Another name of the event of a channel, and of another event, which keeps it.
+#[test]
+fn a_channel_begins_and_ends_at_events_by_the_names_that_they_are_given() {
+    let leaving = || {
+        let Target { heard, last, count } = Target::coordinates();
+        let leave = from(Listening).on(Hear::Leave).to(Listening).must(count.at_least(2.0));
+        let leave = leave.then(count.becomes(0.0));
+        Automaton::starting_in(Listening)
+            .initially(Target { heard: 0.0, last: -1.0, count: 0.0 })
+            .transition(
+                from(Listening)
+                    .on(Hear::Hear)
+                    .to(Listening)
+                    .may(always())
+                    .then([last.becomes(&heard), count.becomes(&count + 1.0)]),
+            )
+            .transition(leave)
+            .build()
+            .expect("it is sound")
+    };
+    let named = |labels: &[&str], input: &str| {
+        let parts = Composition::builder()
+            .add("a", &sender(1.0))
+            .rename("tell", "call")
+            .add("b", &leaving())
+            .rename("leave", "go")
+            .rename("hear", "listen");
+        let parts = labels.iter().fold(parts, |parts, label| parts.label(label));
+        let channel = Channel::new("a.call", input).carrying("a.x", "b.m");
+        parts.channel(channel.taking(0.25, 0.25).holding(2)).build()
+    };
+    let told = |labels: &[&str]| {
+        let trajectory = run(&named(labels, "b.listen").expect("the parts fit"), Policy::Late, 2.5);
+        let told = jumps(&trajectory).into_iter().map(|(t, label)| (t, label.to_owned()));
+        told.collect::<Vec<_>>()
+    };
+    let expected = |call: &str, listen: &str| {
+        [(1.0, call), (1.25, listen), (2.0, call), (2.25, listen), (2.25, "go")]
+            .map(|(t, label)| (t, label.to_owned()))
+    };
+    assert_eq!(told(&[]), expected("a.call", "b.listen"));
+    assert_eq!(told(&["call"]), expected("call", "b.listen"));
+    assert_eq!(told(&["listen", "call"]), expected("call", "listen"));
+    let unknown = named(&[], "b.hear").map(|_| ()).expect_err("it has another name");
+    assert_eq!(unknown, CompositionError::UnknownMessage { event: HEAR.to_owned() });
+}
+
 #[test]
 fn what_is_sent_on_a_full_channel_is_lost_and_the_sender_goes_on() {
     let trajectory = run(&pair(1.0, channel().taking(2.5, 2.5).holding(2)), Policy::Late, 7.0);
@@ -264,17 +378,32 @@ fn channels_that_cannot_be_are_refused() {
     assert_eq!(with(|it| it.channel(Channel::new("a.tell", "c.hear"))), event("c.hear"));
     let twice = with(|it| it.channel(channel()).channel(channel().called("again")));
     assert_eq!(twice, CompositionError::HeardTwice { event: HEAR.to_owned() });
-    let broken: [fn(Channel) -> Channel; 4] = [
+    let built = |change: fn(Channel) -> Channel| {
+        let parts = Composition::builder().add("a", &sender(1.0)).add("b", &receiver());
+        parts.channel(change(channel())).build().map(|_| ())
+    };
+    let broken: [fn(Channel) -> Channel; 8] = [
         |it| it.taking(1.0, 0.5),
+        |it| it.taking(-1.0, 0.5),
         |it| it.taking(0.0, f64::INFINITY),
+        |it| it.taking(f64::NAN, 1.0),
         |it| it.holding(0),
         |it| it.lasting().holding(2),
+        |it| it.lasting().taking(0.0, 1.0),
+        |it| it.lasting().taking(0.0, 1.0).holding(2),
     ];
     for change in broken {
-        let parts = Composition::builder().add("a", &sender(1.0)).add("b", &receiver());
-        let refused = parts.channel(change(channel())).build().map(|_| ());
+        let refused = built(change);
         assert!(matches!(refused, Err(CompositionError::Channel { .. })), "{refused:?}");
     }
+    let sound: [fn(Channel) -> Channel; 5] = [
+        |it| it.taking(0.0, 0.0),
+        |it| it.taking(1.0, 1.0),
+        |it| it.holding(1),
+        |it| it.lasting(),
+        |it| it.lasting().holding(1),
+    ];
+    sound.into_iter().for_each(|change| assert_eq!(built(change), Ok(())));
 }
 
 #[test]

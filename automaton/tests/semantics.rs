@@ -1,8 +1,8 @@
 //! The semantics of runs, as `docs/semantics.md` states them, clause by clause.
 
 use pleach_automaton::{
-    Automaton, Composition, Failure, HybridTime, Policy, Reason, Settings, Trajectory, coordinates,
-    from, observed,
+    Automaton, Composition, Failure, HybridTime, Policy, Reason, Reset, Settings, Trajectory,
+    coordinates, from, observed,
 };
 use pleach_discrete::{TransitionTable, vocabulary};
 use pleach_guards::{Predicate, always, proposition};
@@ -61,6 +61,32 @@ fn an_event_on_the_boundary_of_two_flows_happens_once() {
     assert_eq!(labels(&trajectory), [(1.0, 0, "go")]);
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
     assert_eq!(trajectory.ending().at, HybridTime { t: 2.0, j: 1 });
+}
+
+/// A reset that is a function does what its formulas do, and nothing to what it reads of others.
+#[test]
+fn a_reset_may_be_a_function() {
+    let Clock { time, count } = Clock::coordinates();
+    let formulas = [time.becomes(0.5 * &count), count.becomes(&count + &time)];
+    let function = Reset::new("the same", |clock: &mut Clock| {
+        let Clock { time, count } = *clock;
+        *clock = Clock { time: 0.5 * count, count: count + time };
+    });
+    let ends = [Reset::from(formulas.to_vec()), function].map(|reset| {
+        let go = from(Here).on(Go).to(Here).must(after(1.0) & count.at_most(1.5));
+        let machine = built(clock().transition(go.then(reset)));
+        let trajectory = run(&machine, 3.0);
+        (trajectory.values_at(3.0), trajectory.jumps().len())
+    });
+    assert_eq!(ends[0], (Some(vec![1.5, 2.0]), 2));
+    assert_eq!(ends[0], ends[1]);
+    let overwrite = Reset::new("all", |clock: &mut Clock| *clock = Clock { time: 0.0, count: 7.0 });
+    let go = built(clock().transition(from(Here).on(Go).to(Here).must(after(1.0)).then(overwrite)));
+    let parts = Composition::builder().add("one", &go).add("other", &built(clock()));
+    let pair = parts.connect("other.n", "one.n").build().expect("the parts fit");
+    let trajectory = pair.run(1.5).expect("it can be run");
+    let values = ["one.τ", "other.n", "other.τ"].map(|name| trajectory.value(name, 1.5));
+    assert_eq!(values, [Some(0.5), Some(0.0), Some(1.5)]);
 }
 
 #[test]

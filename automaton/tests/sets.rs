@@ -64,6 +64,28 @@ fn early_takes_the_lower_end_and_late_the_upper() {
     assert_eq!(state.velocity, 5.0, "{}", velocity.name());
 }
 
+/// What has to be taken leaves nothing to chance but the number, whenever it is.
+#[test]
+fn where_there_is_no_choice_nothing_is_drawn() {
+    let Ball { height, velocity } = Ball::coordinates();
+    let drawn = |wait: f64, seed: u64| {
+        let due = height.at_least(wait) & velocity.at_most(0.0);
+        let reset = velocity.becomes_within(1.0, 2.0);
+        let parts = Automaton::starting_in(Falling)
+            .initially(Ball { height: 0.0, velocity: 0.0 })
+            .flow(Falling, height.rate(1.0))
+            .transition(from(Falling).on(Bounce).to(Resting).must(due).then(reset));
+        let settings = Settings { policy: Policy::Random { seed }, ..Settings::default() };
+        let trajectory = parts.build().unwrap().run_with(settings, 5.0).unwrap();
+        assert_eq!(trajectory.jumps()[0].at.t, wait);
+        trajectory.value("v", 5.0).unwrap()
+    };
+    for seed in 0..20 {
+        let [at_once, later] = [0.0, 3.0].map(|wait| drawn(wait, seed));
+        assert!(at_once == later && (1.0..=2.0).contains(&later), "{at_once}, {later}");
+    }
+}
+
 #[test]
 fn chance_takes_every_part_of_an_interval_and_equal_seeds_agree() {
     let mut counts = [0; 3];

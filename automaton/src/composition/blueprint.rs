@@ -389,6 +389,36 @@ mod tests {
 
     use super::*;
 
+    /// A root is one wherever it stands, but for the cases of a formula: which of them counts is another matter.
+    #[test]
+    fn roots_are_found_in_all_parts_of_a_formula() {
+        let [x, y] = ["x", "y"].map(variable);
+        let table = Table::linear([(0.0, 1.0), (1.0, 2.0)]).expect("its points are in order");
+        for root in [x.power(0.5), x.square_root(), x.power(-1.5)] {
+            let around = [
+                root.clone(),
+                root.sin(),
+                -&root,
+                root.power(3.0),
+                table.at(root.clone()),
+                &y - &root,
+                &root / &y,
+                root.min(&y),
+                piecewise([(root.at_most(2.0), y.clone())], &y).expect("there is a comparison"),
+                piecewise([(y.at_most(root.clone()), y.clone())], &y).expect("it is another"),
+            ];
+            for formula in &around {
+                assert_eq!(radicands(formula), [&x], "{formula}");
+            }
+        }
+        let nested = (x.square_root() - &y).square_root();
+        assert_eq!(radicands(&nested).len(), 2);
+        let case = piecewise([(y.at_most(2.0), x.square_root())], &y).expect("a comparison");
+        for formula in [x.power(2.0), x.power(-1.0), x.sin() / &y, table.at(&x), case] {
+            assert!(radicands(&formula).is_empty(), "{formula}");
+        }
+    }
+
     #[test]
     fn what_may_grow_without_bound_are_logarithms_tangents_and_quotients() {
         let [x, y] = ["x", "y"].map(variable);

@@ -167,6 +167,22 @@ mod tests {
         assert!((1..100).contains(&((record.size() - before) / 8)));
     }
 
+    /// Where nothing is taken at the end of a flow, the next begins at the same place and at its own time.
+    #[test]
+    fn a_flow_that_follows_another_begins_where_that_has_ended() {
+        let plane = plane([constant(0.0), constant(0.0)]);
+        let mut record = Record::of(&plane);
+        for since in [8.0, 10.0, 12.0] {
+            record.flown(0, Flight { since: Moment::from(since), ..flight(1, 2) });
+        }
+        let stretches = &record.strands[0].stretches;
+        let begins: Vec<_> = stretches.iter().map(|one| (one.begin.t, one.begin.j)).collect();
+        assert_eq!(begins, [(0.0, 0), (10.0, 0), (12.0, 0)]);
+        let spans = stretches.iter().map(|one| (one.since.seconds(), one.until));
+        assert!(spans.eq([(8.0, 10.0), (10.0, 12.0), (12.0, 14.0)]));
+        assert!(stretches.windows(2).all(|pair| pair[1].first == pair[0].last));
+    }
+
     #[test]
     fn doubts_of_a_flow_are_told_in_the_time_of_the_run() {
         let plane = plane([constant(0.0), constant(0.0)]);

@@ -640,6 +640,67 @@ mod tests {
         }
     }
 
+    /// A number is negative where its bounds are; one that may be zero everywhere is not known to be.
+    #[test]
+    fn a_number_is_negative_from_where_its_upper_bound_is() {
+        let never = |bounds: fn([f64; 2]) -> [f64; 2]| {
+            let mut range = |span| {
+                let [lower, upper] = bounds(span);
+                Interval::new(lower, upper).expect("it is one")
+            };
+            end_before_negative([0.0, 4.0], &mut range).is_none()
+        };
+        assert!(never(|_| [0.0, 1.0]) && never(|_| [0.0, 0.0]));
+        assert!(never(|_| [-1.0, 0.0]) && never(|_| [-1e-300, 1.0]));
+        assert!(never(|[from, to]| [1.0 - 0.25 * to, 1.0 - 0.25 * from]));
+        assert!(!never(|_| [-1.0, -1e-300]));
+        // It falls, and its bounds are exact, or as loose as those of polynomials.
+        let end = |bound: f64, slack: f64| {
+            let mut range = |[from, to]: [f64; 2]| {
+                let loose = slack * (to - from).powi(2);
+                Interval::new(bound - to - loose, bound - from + loose).expect("it is one")
+            };
+            end_before_negative([0.0, 4.0], &mut range).expect("it is negative")
+        };
+        for bound in [0.1, 1.0, 3.9] {
+            assert!((end(bound, 0.0) - bound).abs() < 1e-12, "{bound}");
+            let late = end(bound, 0.5);
+            assert!(bound - 1e-12 < late && late < 4.0, "{late}: {bound}");
+        }
+    }
+
+    /// Bounds of a margin hold what it is, and hardly more where spans are short.
+    #[test]
+    fn the_range_of_a_margin_holds_its_values_closely() {
+        type Exactly = fn(f64) -> f64;
+        let [x, y] = ["x", "y"].map(variable);
+        let margins: [(Expression, Exactly); 3] = [
+            (1.0 / &x, |t| 1.0 / (1.0 + t)),
+            (&x * &y - 2.0, |t| (1.0 + t) * (3.0 - t * t) - 2.0),
+            (y.exp() + &x, |t| (3.0 - t * t).exp() + 1.0 + t),
+        ];
+        let plane = plane([constant(1.0), constant(0.0)]);
+        let field = field(&plane, [1.0, 3.0]);
+        let piece = piece(8.0, [&[1.0, 1.0], &[3.0, 0.0, -1.0]]);
+        for (margin, value) in margins {
+            let tracker = margin.at_least(0.0).track(&["x", "y"]).expect("it is of x and y");
+            for width in [1e-3, 1e-2, 0.1] {
+                for from in [0.0, 0.3, 1.5] {
+                    let to = from + width;
+                    let mut solver = solver(&field, 8.0);
+                    let found = solver.range(&tracker, &plane.components[0], &piece, [from, to]);
+                    let all = (0..=64).map(|part| value(from + width * f64::from(part) / 64.0));
+                    let lower = all.clone().fold(f64::INFINITY, f64::min);
+                    let upper = all.fold(f64::NEG_INFINITY, f64::max);
+                    let room = 1e-12 + 50.0 * width * width;
+                    assert!(found.lower() <= lower + 1e-12 && upper - 1e-12 <= found.upper());
+                    assert!(lower - found.lower() < room, "{margin}: {found:?}, {lower}");
+                    assert!(found.upper() - upper < room, "{margin}: {found:?}, {upper}");
+                }
+            }
+        }
+    }
+
     /// 1 ÷ x where x = 1 − t, and other rates that have no bound at x = 0.
     #[test]
     fn rates_are_bounded_up_to_where_they_are_not() {

@@ -343,4 +343,16 @@ mod tests {
             assert_eq!(spent(stage), expected, "{stage:?}");
         }
     }
+
+    #[test]
+    fn what_two_networks_have_spent_is_added_part_by_part() {
+        let [one, other] = [[1, 20, 300, 4000], [5, 60, 700, 8000]].map(|parts| {
+            let [coordination, routing, motion, acceptance] = parts.map(Duration::from_secs);
+            KernelTimes { coordination, routing, motion, acceptance }
+        });
+        let KernelTimes { coordination, routing, motion, acceptance } = one.and(other);
+        let parts = [coordination, routing, motion, acceptance].map(|part| part.as_secs());
+        assert_eq!(parts, [6, 80, 1000, 12000]);
+        assert_eq!(one.and(KernelTimes::default()), one);
+    }
 }

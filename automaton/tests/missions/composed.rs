@@ -34,3 +34,17 @@ fn nodes_stand_in_the_order_of_their_numbers() {
     let access_points = vec!["access point"; scenario.access_point.len()];
     assert_eq!(kinds.collect::<Vec<_>>(), [robots, access_points, vec!["user"]].concat());
 }
+
+/// What debugging shows of a network is how far it has come, and all members.
+#[test]
+fn a_network_tells_its_step_and_its_members() {
+    let scenario = valid(scenario("scenarios/redundant-node"));
+    let mut network = Network::new(&scenario).expect("its automata are well formed");
+    let executor = Executor::new(2.5 * network.site().settings.period, JUMPS_PER_PERIOD);
+    network.run(&executor.expect("there is time")).expect("robots go on");
+    let told = format!("{network:?}");
+    assert!(told.starts_with("Network { step: 2, members: ["), "{told:.40}");
+    for member in network.nodes() {
+        assert!(told.contains(&format!("{member:?}")));
+    }
+}
