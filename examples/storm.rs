@@ -18,10 +18,8 @@ mod say;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
-use missions::in_storms::{
-    self, SHIPPED, mission_in_storm, mission_with_settings_in_storm, shipped,
-};
-use missions::strategies;
+use missions::in_storms::{SHIPPED, mission_in_storm, mission_with_settings_in_storm};
+use missions::{arguments, shipped, strategies, valid};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::story;
@@ -45,10 +43,10 @@ struct CommandLine {
     #[command(subcommand)]
     command: Option<Command>,
     /// How many missions, of all kinds, in shipped scenarios and on random floor plans in turn
-    #[arg(required = true, value_parser = in_storms::missions)]
+    #[arg(required = true, value_parser = arguments::missions)]
     missions: Option<u64>,
     /// The seed of the first
-    #[arg(default_value_t = 0, value_parser = in_storms::seed)]
+    #[arg(default_value_t = 0, value_parser = arguments::seed)]
     first: u64,
     /// When recruits are called for: paper or eager
     #[arg(long, global = true, value_parser = strategies::named)]
@@ -62,7 +60,7 @@ struct CommandLine {
 enum Command {
     /// Tells the mission of a seed
     Seed {
-        #[arg(value_parser = in_storms::seed)]
+        #[arg(value_parser = arguments::seed)]
         seed: u64,
     },
     /// Tells the mission of a shipped scenario in a kind of storm
@@ -71,13 +69,13 @@ enum Command {
         scenario: String,
         #[arg(value_parser = kind)]
         kind: Kind,
-        #[arg(value_parser = in_storms::seed)]
+        #[arg(value_parser = arguments::seed)]
         seed: u64,
     },
     /// Prints what becomes of shipped scenarios under each kind of storm
     Table {
         /// Storms of each kind for each scenario
-        #[arg(value_parser = in_storms::count)]
+        #[arg(value_parser = arguments::count)]
         seeds: u64,
         /// Only kinds with this in their name
         kind: Option<String>,
@@ -106,7 +104,7 @@ fn run() -> Result<ExitCode, Box<dyn Error>> {
     let mission = |seed| mission(seed, strategy, settings);
     match command {
         Some(Command::One { scenario, kind, seed }) => {
-            one(strategies::following(strategy, shipped(&scenario)), kind, seed)?;
+            one(strategies::following(strategy, valid(shipped(&scenario))), kind, seed)?;
         }
         Some(Command::Seed { seed }) => {
             let (scenario, storm) = mission(seed);
@@ -141,7 +139,7 @@ fn table(seeds: u64, only: Option<&str>, strategy: Option<Strategy>) -> Result<(
     let wanted = kinds_with(only.unwrap_or_default())?;
     let mut missions = Vec::new();
     for name in SHIPPED {
-        let scenario = strategies::following(strategy, shipped(name));
+        let scenario = strategies::following(strategy, valid(shipped(name)));
         let calm = judged_run(&scenario, &Storm::default(), MOST_PERIODS)?.periods;
         say!("{name}: {calm} periods without faults");
         missions.push((scenario, calm));

@@ -180,7 +180,7 @@ fn guards_and_the_discrete_layer_need_the_standard_library_only() {
     }
 }
 
-/// A second opinion is worth something if it is not the first one again.
+/// The oracle computes everything itself: it would otherwise repeat the mistakes of what it checks.
 #[test]
 fn the_oracle_has_only_what_a_trace_holds() {
     const HELD: [&str; 3] = [

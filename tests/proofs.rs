@@ -203,7 +203,12 @@ fn the_document_names_every_fault_and_each_applies() {
         let row = format!("| {} | {} | {} |", fault.name, fault.wrong, fault.engine);
         assert!(rows.iter().any(|found| found.starts_with(&row)), "it should have: {row}");
         assert!(fault.command.starts_with("test -p "), "{}", fault.name);
-        assert!(packages.hold(&fault.command), "{}: no test for {}", fault.name, fault.command);
+        assert!(
+            packages.have_test_for(&fault.command),
+            "{}: no test for {}",
+            fault.name,
+            fault.command
+        );
     }
 }
 
@@ -219,9 +224,9 @@ fn the_document_counts_the_places_of_rounding_and_each_applies() {
     let sentence = format!("{} places, a test fails at all but {unseen}", places.len());
     assert!(document().contains(&sentence), "it should say: {sentence}");
     let packages = Packages::read();
-    places
-        .iter()
-        .for_each(|place| assert!(packages.hold(&place.test), "no test for {}", place.test));
+    places.iter().for_each(|place| {
+        assert!(packages.have_test_for(&place.test), "no test for {}", place.test)
+    });
 }
 
 /// The names that a filter of tests may fit: of files, of folders, and of functions in sources and tests.
@@ -253,7 +258,7 @@ impl Packages {
 
     /// Whether the filter of a command, `-p PACKAGE ... FILTER`, fits a test of its package: it is the name of a file
     /// or a folder, or part of that of a function. A command whose filter fits nothing passes.
-    fn hold(&self, command: &str) -> bool {
+    fn have_test_for(&self, command: &str) -> bool {
         let package = command.split("-p ").nth(1).and_then(|rest| rest.split(' ').next());
         let filter = command.rsplit([' ', ':']).find(|part| !part.is_empty()).unwrap();
         let names = package.and_then(|package| self.0.get(package));
@@ -263,13 +268,12 @@ impl Packages {
     }
 }
 
-/// The package that a file belongs to.
+/// The package that a file belongs to: that of the nearest manifest above it.
 fn package_of(path: &str) -> String {
-    match path.split('/').next().unwrap() {
-        _ if path.starts_with("tests/missions/") => "missions".to_owned(),
-        "src" | "tests" => "pleach".to_owned(),
-        folder => format!("pleach-{folder}"),
-    }
+    let folders = Path::new(path).ancestors().skip(1).map(|folder| root().join(folder));
+    let manifest = folders.map(|it| it.join("Cargo.toml")).find(|it| it.exists()).unwrap();
+    let manifest: toml::Table = fs::read_to_string(manifest).unwrap().parse().unwrap();
+    manifest["package"]["name"].as_str().unwrap().to_owned()
 }
 
 #[test]

@@ -114,7 +114,7 @@ impl<S> Flow<S> {
         }
     }
 
-    /// The rates for whoever keeps them, unless the flow is a function.
+    /// The rates, shared; none if the flow is a function.
     pub(crate) fn shared_rates(&self) -> Option<Arc<[Rate]>> {
         match &self.motion {
             Motion::Rates(rates) => Some(rates.clone()),

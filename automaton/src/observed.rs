@@ -297,6 +297,7 @@ impl Operand {
     }
 }
 
+/// Apart from the type of the state, so that it is compiled once.
 fn names_in(groups: &[Vec<Excluded>]) -> Vec<Vec<&str>> {
     groups.iter().map(|group| group.iter().map(|it| &*it.name).collect()).collect()
 }

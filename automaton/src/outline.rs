@@ -84,6 +84,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         let mut transitions = Vec::with_capacity(self.rows.len());
         for edge in self.graph.raw_edges() {
             let transition = &edge.weight;
+            // The builder sees to it that its event is among them, as the initial location is.
             transitions.push(Transition {
                 source: edge.source().index(),
                 event: place_of(&self.events, transition.event).unwrap_or_default(),
@@ -181,8 +182,8 @@ pub(crate) fn names_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<&
     mapped(all, |one| name(*one))
 }
 
-/// What `collect` makes of a `map`, from a quarter of the code: it is compiled for the types of each
-/// automaton.
+/// As `all.into_iter().map(change).collect()`, in a quarter of the code, which counts, since it is compiled for the types
+/// of each automaton.
 pub(crate) fn mapped<A, B>(all: impl IntoIterator<Item = A>, change: impl Fn(A) -> B) -> Vec<B> {
     let mut changed = Vec::new();
     for one in all {

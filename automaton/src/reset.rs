@@ -149,7 +149,7 @@ impl<S> Reset<S> {
         }
     }
 
-    /// The assignments for whoever keeps them; none if the reset is a function.
+    /// The assignments, shared; an empty list if the reset is a function.
     pub(crate) fn shared_assignments(&self) -> Arc<[Assignment]> {
         match &self.form {
             Form::Assignments(assignments) => assignments.clone(),

@@ -11,7 +11,7 @@ use crate::law::Command;
 use crate::outline::place_of;
 use crate::reset::NewValue;
 
-/// The parts, with what the types of the automaton know of it.
+/// The parts, with the names that the types give to locations and events.
 pub(super) struct Draft<'a> {
     parts: &'a Parts,
     /// The names of locations and events, by number.
@@ -40,7 +40,7 @@ pub(super) struct Vocabulary<'a> {
 
 /// What is said of a location.
 pub(super) struct Said<'a> {
-    /// How the coordinates change, with what changes throughout; none if nothing is said, or by a
+    /// How the coordinates change, with what changes throughout; none if nothing is said of it, or if its flow is a
     /// function.
     pub(super) rates: Option<Vec<Rate>>,
     /// The number of the flow.

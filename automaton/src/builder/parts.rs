@@ -10,7 +10,7 @@ use crate::flow::Rate;
 use crate::law::Command;
 use crate::reset::Assignment;
 
-/// Locations and events are numbers here, and what is a function has a number in the builder.
+/// Locations, events, flows and resets are numbers here; the builder has what they stand for.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Parts {
     pub(super) initial: usize,
@@ -21,7 +21,7 @@ pub(super) struct Parts {
     pub(super) edges: Vec<(usize, Given)>,
     /// For the rows from a location on an event to a location.
     pub(super) transfers: Vec<([usize; 3], Given)>,
-    /// Their numbers are their places here; without rates a flow is a function.
+    /// By location. The number of a flow is its place here; without rates it is a function.
     pub(super) flows: Vec<(usize, Option<Arc<[Rate]>>)>,
     pub(super) invariants: Vec<(usize, Predicate)>,
     /// What is chosen at samples.

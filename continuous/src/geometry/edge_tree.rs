@@ -22,6 +22,7 @@ pub(super) struct EdgeTree {
 }
 
 impl EdgeTree {
+    /// Coordinates are finite, and small enough for their squares.
     pub(super) fn new(edges: impl IntoIterator<Item = Segment>) -> EdgeTree {
         let edges: Vec<Segment> = edges.into_iter().collect();
         let mut leaves: Vec<Bounds> = edges.iter().map(Bounds::of).collect();
@@ -141,8 +142,8 @@ impl EdgeTree {
         );
     }
 
-    /// The least cost of an edge, with the first edge that has it, by its index; the cost of a box
-    /// is no more than that of any edge in it.
+    /// The least cost of an edge, with the first edge that has it, by its index. The cost of a box is no more than that
+    /// of any edge in it, up to rounding; by as much another edge may cost less.
     fn least(
         &self,
         of_box: impl Fn(&Bounds) -> f64,
@@ -155,7 +156,8 @@ impl EdgeTree {
         least
     }
 
-    /// Replaces the least cost so far by that of an edge below a node, if one has less.
+    /// Takes the least cost below a node, if it is less than the least so far, or as little and of an earlier edge. What
+    /// is not a number is never the least.
     fn lower(
         &self,
         least: &mut Option<(f64, usize)>,
@@ -166,7 +168,7 @@ impl EdgeTree {
         match &self.boxes.nodes[node] {
             BvhNode::Leaf { shape_index: index, .. } => {
                 let found = (of_edge(&self.edges[*index]), *index);
-                if least.is_none_or(|least| found < least) {
+                if !found.0.is_nan() && least.is_none_or(|least| found < least) {
                     *least = Some(found);
                 }
             }
@@ -198,6 +200,7 @@ impl EdgeTree {
             && self.any_below(0, &mut enter, &mut visit)
     }
 
+    /// The same below a node whose box is admitted.
     fn any_below(
         &self,
         node: usize,
@@ -234,7 +237,7 @@ impl Bounded<f64, 2> for Bounds {
 }
 
 impl BHShape<f64, 2> for Bounds {
-    // Needed to change a tree, which is not done.
+    // Asked for only where a tree is changed after it is built.
     fn set_bh_node_index(&mut self, _: usize) {}
 
     fn bh_node_index(&self) -> usize {

@@ -87,3 +87,14 @@ fn tolerances_and_clearances_have_ranges() {
     assert!(FreeSpace::new(&workspace, f64::INFINITY).is_err());
     assert!(FreeSpace::new(&workspace, 1e300).is_err());
 }
+
+#[test]
+fn what_is_no_place_has_no_nearest_one() {
+    let square = ring(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+    let workspace = Workspace::new(square, vec![]).unwrap();
+    let space = FreeSpace::new(&workspace, 0.1).unwrap();
+    let (nowhere, inside) = (Point::new(f64::NAN, 0.5), Point::new(0.5, 0.5));
+    assert!(space.nearest(nowhere).x.is_nan());
+    assert_eq!(space.nearest_reached(inside, nowhere), None);
+    assert_eq!(workspace.clearance(nowhere), f64::NEG_INFINITY);
+}

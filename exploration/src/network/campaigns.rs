@@ -54,7 +54,7 @@ const fn robots(robots: usize, expected: Counts) -> Campaign {
     }
 }
 
-/// What every test run explores.
+/// What every run of the tests of this package explores.
 pub const QUICK: &[Campaign] = &[
     Campaign {
         name: "two robots, every numbering",

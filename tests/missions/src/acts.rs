@@ -12,9 +12,9 @@ use std::sync::Arc;
 pub struct Acts {
     /// How many missions there are.
     pub missions: usize,
-    /// In how many of them a row is taken.
+    /// In how many of them each row is taken.
     pub rows: BTreeMap<NamedRow, usize>,
-    /// In how many of them a kind of message is heard.
+    /// In how many of them each kind of message is heard.
     pub heard: BTreeMap<&'static str, usize>,
 }
 

@@ -72,7 +72,7 @@ pub fn redundant(snapshot: &Snapshot) -> usize {
     snapshot.roles.iter().filter(|&&role| role == Role::Redundant).count()
 }
 
-/// How many are.
+/// How many robots of a mission are needed.
 pub fn used(snapshot: &Snapshot) -> usize {
     snapshot.roles.len() - redundant(snapshot)
 }

@@ -6,17 +6,12 @@ use pleach::automaton::network::scenario::{
 use pleach::verify::network::storm::{Kind, Storm, allowing_for, draw};
 
 use crate::floor_plans::{Dice, Family, scenario as plan};
-use crate::read;
+use crate::{shipped, valid};
 
 /// Scenarios that are tried in storms beside random ones.
 pub const SHIPPED: [&str; 5] = ["study-1", "study-2", "office", "discs", "corridor"];
 /// Control periods for which a mission is taken to last when its faults are drawn.
 pub const DURATION: f64 = 300.0;
-
-/// A shipped scenario.
-pub fn shipped(name: &str) -> ValidScenario {
-    read(format!("scenarios/{name}.toml"))
-}
 
 /// The mission of a seed, and its storm: kinds and plans take turns.
 pub fn mission_in_storm(seed: u64) -> (ValidScenario, Storm) {
@@ -44,7 +39,7 @@ pub fn mission_of_turn(turn: usize, kind: Kind, seed: u64) -> (ValidScenario, St
 fn plan_of_turn(turn: usize, seed: u64) -> ValidScenario {
     let families: Vec<Family> = Family::of_every_day().collect();
     match turn % (SHIPPED.len() + families.len()) {
-        number if number < SHIPPED.len() => shipped(SHIPPED[number]),
+        number if number < SHIPPED.len() => valid(shipped(SHIPPED[number])),
         number => plan(families[number - SHIPPED.len()], seed),
     }
 }
@@ -98,33 +93,4 @@ fn draw_settings(scenario: &mut Scenario, dice: &mut Dice) {
         let rate = dice.scale(0.002, 0.07);
         scenario.robot.iter_mut().for_each(|robot| robot.rate = rate);
     }
-}
-
-/// How many missions are asked for.
-///
-/// # Errors
-/// What may be asked for.
-pub fn missions(text: &str) -> Result<u64, String> {
-    count(text).map_err(|error| {
-        format!("{error}: how many missions are to be run; or it is one of seed, one and table")
-    })
-}
-
-/// A number of missions or storms.
-///
-/// # Errors
-/// Which numbers are possible.
-pub fn count(text: &str) -> Result<u64, String> {
-    text.parse()
-        .ok()
-        .filter(|&count| count > 0)
-        .ok_or_else(|| format!("a whole number from 1 to {} is expected", u64::MAX))
-}
-
-/// A seed.
-///
-/// # Errors
-/// Which numbers are possible.
-pub fn seed(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("a whole number from 0 to {} is expected", u64::MAX))
 }

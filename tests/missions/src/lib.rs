@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 mod acts;
+pub mod arguments;
 mod drawn;
 pub mod floor_plans;
 pub mod in_storms;
@@ -21,4 +22,4 @@ pub use medium::{Arrival, AskedTwice, Filtered, Through, Written};
 pub use mission::{
     Mission, Period, network_over, run, run_by, run_over, run_unmonitored, shipped_mission, traced,
 };
-pub use scenarios::{files, read, root, shipped, shipped_names, valid};
+pub use scenarios::{files, read, shipped, shipped_names, valid};

@@ -97,7 +97,7 @@ pub struct Filtered<F> {
 }
 
 impl<F: FnMut(Arrival) -> bool> Filtered<F> {
-    /// The radio of a site, less these messages.
+    /// The radio of a site, without the messages of which `loses` says so.
     pub fn new(site: &Site, loses: F) -> Through<Self> {
         let positions = Vec::new();
         let filter = Filtered { robots: site.robots, positions, messages: 0, updates: 0, loses };
@@ -235,7 +235,7 @@ pub struct Written {
 }
 
 impl Written {
-    /// The radio of a site.
+    /// The radio of a site, which writes and reads every message.
     pub fn new(site: &Site) -> Through<Self> {
         Through::new(site, Written { site: site.clone(), bytes: 0 })
     }

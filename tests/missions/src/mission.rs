@@ -61,6 +61,12 @@ pub fn run(scenario: Scenario) -> Mission {
     Mission::new(scenario.into_scenario(), recorder, completed)
 }
 
+/// The mission of a scenario by this strategy, with the monitor watching.
+pub fn run_by(strategy: Strategy, mut scenario: Scenario) -> Mission {
+    scenario.control.strategy = Some(strategy);
+    run(scenario)
+}
+
 /// The trace of the mission of a scenario, and how that was completed.
 pub fn traced(scenario: &ValidScenario) -> (Vec<u8>, Completed) {
     let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
@@ -68,13 +74,7 @@ pub fn traced(scenario: &ValidScenario) -> (Vec<u8>, Completed) {
     (writer.finish().unwrap(), completed)
 }
 
-/// The same by this strategy.
-pub fn run_by(strategy: Strategy, mut scenario: Scenario) -> Mission {
-    scenario.control.strategy = Some(strategy);
-    run(scenario)
-}
-
-/// The same over a medium of the test's own.
+/// The mission of a scenario over a medium of the test's own, and its network.
 pub fn run_over<M: Medium<Message, Point>>(
     scenario: Scenario,
     medium: impl FnOnce(&Site) -> M,

@@ -1,6 +1,6 @@
 //! A second opinion on a trace: what the properties of a mission say, computed from scratch.
 //!
-//! Nothing here comes from the crates under test but the reader of traces. Distances along
+//! Of the packages under test it uses the reader of traces and what that returns, and nothing else. Distances along
 //! segments are exact; loads are sampled.
 
 use pleach::automaton::network::record::{MissionEvent, Route, Snapshot};

@@ -3,8 +3,8 @@
 //! `cargo run --release --example storm -- table 4` shows all kinds of storms, and what breaks in them.
 
 use crate::stressed::stressed_scenarios;
-use missions::in_storms::{self, DURATION, mission_of_turn, shipped};
-use missions::strategies;
+use missions::in_storms::{DURATION, mission_of_turn};
+use missions::{arguments, shipped, strategies, valid};
 use pleach::automaton::network::record::{End, MissionEvent, Outcome};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::automaton::network::{Crash, FaultyNode, Message, Network, NodeFaults};
@@ -29,7 +29,7 @@ fn storm(name: &str, kind: Kind, seed: u64) -> Verdict {
 
 fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
     println!("{name}, {}, seed {seed}", kind.name());
-    let scenario = shipped(name);
+    let scenario = valid(shipped(name));
     let scenario = allowing_for(kind, &scenario).expect("there is room for errors");
     let storm = draw(kind, seed, &scenario, DURATION);
     let is_exact = kind.errors(&scenario).are_none();
@@ -39,7 +39,7 @@ fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
 
 /// A shipped scenario in the paper's order, for what happens at a certain time of its mission, or in a certain storm.
 fn in_papers_order(name: &str) -> ValidScenario {
-    strategies::following(Some(Strategy::Paper), shipped(name))
+    strategies::following(Some(Strategy::Paper), valid(shipped(name)))
 }
 
 /// How the mission of a shipped scenario in the paper's order ends in which one node stops and nothing else fails; no
@@ -112,7 +112,7 @@ impl<M: Medium<Message, Point>> Observer<Network<M, FaultyNode>> for Spoiled {
 
 /// What the judge finds in the mission of corridor without faults, with such events.
 fn found_in(spoil: fn(&mut MissionEvent)) -> Vec<Violation> {
-    let (scenario, storm) = (shipped("corridor"), Storm::default());
+    let (scenario, storm) = (valid(shipped("corridor")), Storm::default());
     let mut observer = Spoiled { judge: Judge::new(&scenario, &storm), spoil };
     let mut network = network(&scenario, &storm).expect("it is valid");
     let horizon = scenario.settings().period * PERIODS as f64;
@@ -346,7 +346,7 @@ fn missions_are_serviced_although_clocks_are_not_aligned() {
 /// All robots begin some control periods after the access point and the user.
 #[test]
 fn an_access_point_waits_for_robots_that_begin_after_it() {
-    let scenario = shipped("redundant-node");
+    let scenario = valid(shipped("redundant-node"));
     let late = NodeFaults { joins: Some(4.0), ..NodeFaults::default() };
     let nodes = (0..scenario.robot.len()).map(|robot| (robot, late.clone())).collect();
     let storm = Storm { nodes, ..Storm::default() };
@@ -411,7 +411,7 @@ fn missions_are_serviced_although_a_robot_restarts() {
 #[test]
 fn a_robot_restarts_at_the_tick_of_the_others() {
     for period in [0.01, 0.3, 0.7] {
-        let mut scenario = shipped("leaf-leader").into_scenario();
+        let mut scenario = shipped("leaf-leader");
         scenario.control.period = Some(period);
         let scenario = ValidScenario::new(scenario).unwrap();
         let time = |step: f64| step * period;
@@ -430,7 +430,7 @@ fn the_mission_goes_on_when_the_first_access_point_restarts() {
     for (name, gone, time, back) in
         [("corridor", 11, 100.0, 105.0), ("study-2", 6, 60.0, 90.0), ("corridor", 0, 3.0, 4.0)]
     {
-        let scenario = shipped(name);
+        let scenario = valid(shipped(name));
         let first = scenario.robot.len();
         let crash = |time, back| NodeFaults {
             crash: Some(Crash { time, inputs: 0, back }),
@@ -489,10 +489,10 @@ fn the_mission_goes_on_without_a_robot_that_stops() {
 /// The first argument of the example `storm` is a number, or names what else it does.
 #[test]
 fn a_number_of_missions_that_is_none_is_refused_with_what_may_stand_there() {
-    assert_eq!((in_storms::missions("12"), in_storms::seed("0")), (Ok(12), Ok(0)));
-    let refused = in_storms::missions("x").unwrap_err();
+    assert_eq!((arguments::missions("12"), arguments::seed("0")), (Ok(12), Ok(0)));
+    let refused = arguments::missions("x").unwrap_err();
     assert!(refused.starts_with("a whole number from 1 to "), "{refused}");
     assert!(refused.contains("seed, one and table"), "{refused}");
-    assert!(in_storms::count("0").unwrap_err().contains("from 1 to"));
-    assert!(in_storms::seed("-1").unwrap_err().contains("from 0 to"));
+    assert!(arguments::count("0").unwrap_err().contains("from 1 to"));
+    assert!(arguments::seed("-1").unwrap_err().contains("from 0 to"));
 }

@@ -63,7 +63,7 @@ impl Family {
     pub const WINDING: [Family; 5] =
         [Family::Maze, Family::Spiral, Family::Caves, Family::Islands, Family::Clusters];
 
-    /// All others.
+    /// All families but those of [`WINDING`](Self::WINDING).
     pub const ALL: [Family; 14] = [
         Family::Office,
         Family::Ring,
@@ -81,7 +81,7 @@ impl Family {
         Family::Rates,
     ];
 
-    /// What it is called.
+    /// Its name, as in the names of its scenarios.
     pub fn name(self) -> &'static str {
         match self {
             Family::Office => "office",

@@ -10,9 +10,9 @@ mod families;
 mod outline;
 mod places;
 
+pub use dice::Dice;
 pub use families::Family;
 
-pub use dice::Dice;
 use pleach::automaton::network::scenario::ValidScenario;
 
 /// Drafts that may fail (a crowd that finds no room, walls that meet) before a family is at fault.
