@@ -1,8 +1,7 @@
 //! Random missions on floor plans to which the robots are not tuned.
 //!
-//! A [`Family`] and a seed give a [`Scenario`], always the same one. It can start (it passes
-//! [`ValidScenario::new`]), its tasks can be reached, and it has more robots than a tree of
-//! shortest paths to its tasks needs.
+//! A [`Family`] and a seed give a [`ValidScenario`], always the same one. Its tasks can be reached, and it has more
+//! robots than a tree of shortest paths to its tasks needs.
 
 mod brief;
 mod dice;
