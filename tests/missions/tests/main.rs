@@ -7,7 +7,11 @@ mod generated;
 
 mod certificates;
 mod coverage;
+mod determinism;
+mod errands;
+mod fleets;
 mod found_missions;
+mod medium;
 mod random_missions;
 mod rates;
 mod storms;

@@ -2,7 +2,7 @@
 //! Each mission is held against every property while it runs.
 
 use missions::floor_plans::{Family, scenario};
-use missions::{Period, run, shipped, shipped_mission, traced, valid};
+use missions::{Period, read, run, shipped, shipped_mission, traced, valid};
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Teams, ValidScenario};
 use pleach::automaton::network::{Crash, NodeFaults};
@@ -116,8 +116,7 @@ fn the_end_names_the_access_point_whose_tasks_are_not_serviced() {
 /// What stands in the way of the team is no robot of its own.
 #[test]
 fn a_team_that_a_body_blocks_says_so() {
-    let path = "tests/scenarios/given-up/body-in-corridor.toml";
-    let mission = run(pleach::scenario_file::read(path.as_ref()).unwrap().into_scenario());
+    let mission = run(read("tests/scenarios/given-up/body-in-corridor.toml").into_scenario());
     assert_eq!(mission.end.outcome, Outcome::Blocked, "{}", mission.end.reason);
     let told = "a robot of another access point stands beside robot 2";
     assert!(mission.end.reason.ends_with(told), "{}", mission.end.reason);
@@ -129,8 +128,7 @@ fn a_team_that_a_body_blocks_says_so() {
 /// by is what stands in its way.
 #[test]
 fn a_team_that_a_body_blocks_does_not_blame_its_links_where_messages_are_lost() {
-    let path = "tests/scenarios/given-up/body-in-corridor.toml";
-    let scenario = pleach::scenario_file::read(path.as_ref()).unwrap();
+    let scenario = read("tests/scenarios/given-up/body-in-corridor.toml");
     for (loss, seed) in [(0.05, 1), (0.1, 2), (0.2, 3), (0.3, 4)] {
         let messages = MessageFaults { loss, ..MessageFaults::default() };
         let lossy = Storm { seed, messages, nodes: Vec::new() };
