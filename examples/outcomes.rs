@@ -21,10 +21,10 @@
 
 use clap::Parser;
 use missions::floor_plans::{Family, scenario};
-use missions::strategies;
+use missions::{strategies, used};
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
-use pleach::discrete::network::{Phase, Role};
+use pleach::discrete::network::Phase;
 use pleach::mission::{Watcher, run};
 use pleach::verify::network::Spans;
 use std::error::Error;
@@ -147,7 +147,7 @@ impl Watcher for Usage {
             self.spent.count(&before, snapshot);
         }
         self.periods = snapshot.step;
-        self.robots = snapshot.roles.iter().filter(|&&role| role != Role::Redundant).count();
+        self.robots = used(snapshot);
         let announced = |event: &&MissionEvent| matches!(event, MissionEvent::TaskAnnounced { .. });
         self.tasks += events.iter().filter(announced).count();
         Ok(())

@@ -5,8 +5,8 @@
 
 use clap::Parser;
 use missions::floor_plans::{Family, scenario};
+use missions::redundant;
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
-use pleach::discrete::network::Role;
 use pleach::mission::{Watcher, run};
 use std::error::Error;
 use std::io;
@@ -28,7 +28,7 @@ impl Watcher for LastSight {
         if !events.is_empty() {
             self.eventful = snapshot.step;
         }
-        self.redundant = snapshot.roles.iter().filter(|&&role| role == Role::Redundant).count();
+        self.redundant = redundant(snapshot);
         Ok(())
     }
 }

@@ -1,9 +1,8 @@
 //! Traces of missions with faults are judged by what must hold under any fault: sound ones pass, spoiled ones
 //! do not.
 
-use missions::shipped;
+use missions::{shipped, valid};
 use pleach::automaton::network::record::{Faults, Outcome};
-use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Crash, NodeFaults};
 use pleach::automaton::node::MessageFaults;
 use pleach::judge::{Verdict, judge};
@@ -25,7 +24,7 @@ fn lossy() -> Storm {
 fn trace_of(name: &str, storm: &Storm) -> Vec<Value> {
     let mut scenario = shipped(name);
     scenario.control.max_steps = Some(700);
-    let scenario = ValidScenario::new(scenario).unwrap();
+    let scenario = valid(scenario);
     let mut writer = TraceWriter::with_faults(Vec::new(), &scenario, storm.faults()).unwrap();
     mission::run_in_storm(&scenario, storm, &mut [&mut writer]).unwrap();
     let bytes = writer.finish().unwrap();
@@ -59,7 +58,7 @@ fn a_mission_with_losses_is_sound_by_what_no_loss_breaks_and_not_by_all_definiti
 /// A trace has one line for each control period, and so no place for clocks that are not aligned.
 #[test]
 fn nothing_is_violated_in_storms_of_all_kinds() {
-    let scenario = ValidScenario::new(shipped("redundant-node")).unwrap();
+    let scenario = valid(shipped("redundant-node"));
     let kinds = Kind::ALL.iter().filter(|kind| kind.errors(&scenario).are_none());
     for &kind in kinds.filter(|&&kind| kind != Kind::Clocks) {
         let mut storm = draw(kind, 3, &scenario, 100.0);
@@ -370,7 +369,7 @@ fn a_task_is_closed_once() {
 
 #[test]
 fn without_faults_nothing_in_a_trace_is_new() {
-    let scenario = ValidScenario::new(shipped("redundant-node")).unwrap();
+    let scenario = valid(shipped("redundant-node"));
     let write = |faults: Faults| {
         let writer = TraceWriter::with_faults(Vec::new(), &scenario, faults).unwrap();
         String::from_utf8(writer.finish().unwrap()).unwrap()

@@ -1,6 +1,6 @@
 //! The layering that `docs/architecture.md` describes, read off manifests and sources.
 
-use crate::sources::{files_below, lines_of_code, read, relative, root};
+use crate::sources::{files_below, lines_of_code, manifest, read, relative, root};
 use std::fs;
 use std::path::Path;
 
@@ -68,11 +68,6 @@ fn sources() -> Vec<Source> {
 
 fn assert_none(offences: Vec<String>, rule: &str) {
     assert!(offences.is_empty(), "{rule}:\n{}", offences.join("\n"));
-}
-
-/// The manifest in a folder.
-fn manifest(folder: &Path) -> toml::Table {
-    fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
 }
 
 /// The `[dependencies]` table of a package.

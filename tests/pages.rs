@@ -1,6 +1,6 @@
 //! What a page says of a trace is what the judge says of it.
 
-use pleach::automaton::network::scenario::ValidScenario;
+use missions::{shipped, valid};
 use pleach::judge::{Verdict, judge};
 use pleach::mission;
 use pleach::page::of_trace;
@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 fn lines() -> Vec<Value> {
     static TRACE: OnceLock<Vec<Value>> = OnceLock::new();
     let trace = TRACE.get_or_init(|| {
-        let scenario = ValidScenario::new(missions::shipped("too-few")).unwrap();
+        let scenario = valid(shipped("too-few"));
         let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
         mission::run(&scenario, &mut [&mut writer]).unwrap();
         let text = String::from_utf8(writer.finish().unwrap()).unwrap();

@@ -7,9 +7,9 @@ pub mod rounding;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::sources::{files_below, read, relative, root};
+use crate::sources::{files_below, manifest, read, relative, root};
 use catalogue::faults;
 use pleach::verify::network::Property;
 use pleach_exploration::network::{ALWAYS, Campaign, Counts, ENDS, QUICK, THOROUGH};
@@ -224,9 +224,9 @@ fn the_document_counts_the_places_of_rounding_and_each_applies() {
     let sentence = format!("{} places, a test fails at all but {unseen}", places.len());
     assert!(document().contains(&sentence), "it should say: {sentence}");
     let packages = Packages::read();
-    places.iter().for_each(|place| {
-        assert!(packages.have_test_for(&place.test), "no test for {}", place.test)
-    });
+    for place in &places {
+        assert!(packages.have_test_for(&place.test), "no test for {}", place.test);
+    }
 }
 
 /// The names that a filter of tests may fit: of files, of folders, and of functions in sources and tests.
@@ -241,19 +241,20 @@ struct Packages(BTreeMap<String, Names>);
 
 impl Packages {
     fn read() -> Self {
-        let mut packages: BTreeMap<String, Names> = BTreeMap::new();
+        let mut packages: BTreeMap<PathBuf, Names> = BTreeMap::new();
         let folders = PACKAGES.iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
         let folders = folders.map(|(package, it)| root().join(package).join(it));
         for file in folders.filter(|folder| folder.exists()).flat_map(files_below) {
             let path = relative(&file);
-            let names = packages.entry(package_of(&path)).or_default();
+            let names = packages.entry(folder_of_package(&file).to_owned()).or_default();
             let parts = Path::new(&path).with_extension("");
             names.files.extend(parts.iter().map(|part| part.to_string_lossy().into_owned()));
             let source = fs::read_to_string(&file).unwrap_or_default();
             let found = source.lines().filter_map(|line| line.trim_start().strip_prefix("fn "));
             names.functions.extend(found.filter_map(|it| Some(it.split_once('(')?.0.to_owned())));
         }
-        Self(packages)
+        let name = |folder: &Path| manifest(folder)["package"]["name"].as_str().unwrap().to_owned();
+        Self(packages.into_iter().map(|(folder, names)| (name(&folder), names)).collect())
     }
 
     /// Whether the filter of a command, `-p PACKAGE ... FILTER`, fits a test of its package: it is the name of a file
@@ -268,12 +269,9 @@ impl Packages {
     }
 }
 
-/// The package that a file belongs to: that of the nearest manifest above it.
-fn package_of(path: &str) -> String {
-    let folders = Path::new(path).ancestors().skip(1).map(|folder| root().join(folder));
-    let manifest = folders.map(|it| it.join("Cargo.toml")).find(|it| it.exists()).unwrap();
-    let manifest: toml::Table = fs::read_to_string(manifest).unwrap().parse().unwrap();
-    manifest["package"]["name"].as_str().unwrap().to_owned()
+/// The nearest folder above a file that has a manifest: that of its package.
+fn folder_of_package(file: &Path) -> &Path {
+    file.ancestors().skip(1).find(|folder| folder.join("Cargo.toml").exists()).unwrap()
 }
 
 #[test]

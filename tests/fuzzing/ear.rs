@@ -1,9 +1,9 @@
 //! What is said in a mission, and nodes in the midst of it that hear more.
 
+use missions::{Passage, Through};
 use pleach::automaton::Executor;
-use pleach::automaton::network::{Member, Message, Network, Radio};
-use pleach::automaton::node::{Delivery, Envelope, Input, Medium, Node, Outputs};
-use pleach::continuous::Point;
+use pleach::automaton::network::{Member, Message, Network};
+use pleach::automaton::node::{Envelope, Input, Node, Outputs};
 use pleach::scenario_file;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,9 +14,9 @@ const OF_A_KIND: usize = 12;
 /// Ticks for which a node goes on after it has heard something.
 const TICKS: usize = 12;
 
-/// A radio that keeps some of what is said.
+/// Keeps some of what is said.
+#[derive(Default)]
 pub struct Ear {
-    radio: Radio,
     /// By kind: its beginning as text.
     said: BTreeMap<String, Vec<String>>,
 }
@@ -29,7 +29,7 @@ impl Ear {
     pub fn listen() -> (Listeners, Vec<String>) {
         let scenario = scenario_file::read(Path::new("scenarios/corridor.toml")).unwrap();
         let site = Arc::clone(scenario.site());
-        let ear = Ear { radio: Radio::new(&site), said: BTreeMap::new() };
+        let ear = Through::new(&site, Ear::default());
         let mut network = Network::with_medium(&scenario, site, ear).unwrap();
         Executor::new(150.0, 1_000_000).unwrap().run(&mut network, &mut ()).unwrap();
         let said = network.medium().said.values().flatten().cloned().collect();
@@ -37,12 +37,8 @@ impl Ear {
     }
 }
 
-impl Medium<Message, Point> for Ear {
-    fn update(&mut self, bodies: &[Point]) {
-        self.radio.update(bodies);
-    }
-
-    fn send(&mut self, envelope: Envelope<Message>) {
+impl Passage for Ear {
+    fn note_sent(&mut self, envelope: &Envelope<Message>) {
         let text = serde_json::to_string(&envelope.message).unwrap();
         let kind: String = text.chars().take(12).collect();
         let known = self.said.entry(kind).or_default();
@@ -53,22 +49,6 @@ impl Medium<Message, Point> for Ear {
             }
             _ => known.push(text),
         }
-        self.radio.send(envelope);
-    }
-
-    fn time_to_arrival(&self) -> Option<f64> {
-        self.radio.time_to_arrival()
-    }
-
-    fn flow(&mut self, duration: f64) {
-        self.radio.flow(duration);
-    }
-
-    fn deliver<E>(
-        &mut self,
-        hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
-    ) -> Result<(), E> {
-        self.radio.deliver(hand_over)
     }
 }
 

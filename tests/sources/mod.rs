@@ -16,6 +16,11 @@ pub fn files_below(folder: impl AsRef<Path>) -> Vec<PathBuf> {
     files
 }
 
+/// The manifest in a folder.
+pub fn manifest(folder: &Path) -> toml::Table {
+    fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
+}
+
 /// The path of a file from the root of the workspace, with slashes.
 pub fn relative(file: &Path) -> String {
     file.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/")

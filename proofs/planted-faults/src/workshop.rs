@@ -90,7 +90,9 @@ impl<'a> Workshop<'a> {
 
     /// What the compiler objects to in the libraries of the copy.
     fn complaints(&self) -> Result<Vec<Complaint>, Error> {
-        let output = self.cargo("check --quiet --lib --message-format json").output()?;
+        let output = self
+            .cargo("check --quiet --lib --workspace --exclude pleach-benches --message-format json")
+            .output()?;
         let text = String::from_utf8_lossy(&output.stdout);
         let lines = text.lines().map(serde_json::from_str::<Line>);
         let messages = lines.filter_map(|line| line.map(|line| line.message).transpose());

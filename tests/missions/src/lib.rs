@@ -18,7 +18,7 @@ pub mod strategies;
 
 pub use acts::{Acts, counted};
 pub use drawn::{Drawn, redundant, used};
-pub use medium::{Arrival, AskedTwice, Filtered, Through, Written};
+pub use medium::{Arrival, AskedTwice, Filtered, Passage, Through, Written};
 pub use mission::{
     Mission, Period, network_over, run, run_by, run_over, run_unmonitored, shipped_mission, traced,
 };

@@ -30,12 +30,17 @@ pub trait Passage {
     /// Where the nodes are now.
     fn update(&mut self, _: &[Point]) {}
 
+    /// A node sends this.
+    fn note_sent(&mut self, _: &Envelope<Message>) {}
+
     /// Hands a message over as often as it arrives, and as it arrives.
     fn pass<E>(
         &mut self,
         delivery: Delivery<'_, Message>,
-        hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
-    ) -> Result<(), E>;
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        hand_over(delivery)
+    }
 }
 
 /// A radio with a passage behind it.
@@ -46,7 +51,8 @@ pub struct Through<P> {
 }
 
 impl<P> Through<P> {
-    fn new(site: &Site, passage: P) -> Self {
+    /// The radio of a site with this passage.
+    pub fn new(site: &Site, passage: P) -> Self {
         Through { radio: Radio::new(site), passage }
     }
 }
@@ -66,6 +72,7 @@ impl<P: Passage> Medium<Message, Point> for Through<P> {
     }
 
     fn send(&mut self, envelope: Envelope<Message>) {
+        self.passage.note_sent(&envelope);
         self.radio.send(envelope);
     }
 

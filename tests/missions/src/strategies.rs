@@ -1,5 +1,6 @@
 //! Missions with either strategy of the primary team.
 
+use crate::valid;
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 
 /// The paper's, and the eager one.
@@ -20,5 +21,5 @@ pub fn following(strategy: Option<Strategy>, scenario: ValidScenario) -> ValidSc
     let Some(strategy) = strategy else { return scenario };
     let mut changed = scenario.scenario().clone();
     changed.control.strategy = Some(strategy);
-    ValidScenario::new(changed).unwrap_or_else(|error| panic!("{}: {error}", scenario.name))
+    valid(changed)
 }

@@ -1,7 +1,7 @@
 //! Tasks with times: asked for late, serviced for a while, taken back. How such a mission goes, also where
 //! messages are lost, and what the judge says of records in which tasks are dropped or closed for no reason.
 
-use missions::{Mission, Period, run, run_by, shipped, valid};
+use missions::{Mission, Period, run, run_by, shipped, used, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
 use pleach::automaton::network::{Crash, NodeFaults};
@@ -67,8 +67,7 @@ fn robots_of_tasks_that_are_over_are_free() {
     assert_eq!(roles(ended + 60)[robot], Role::Redundant);
     // Two tasks are taken back, one of them while it is pursued: nobody is of any use then.
     let idle = when(mission, &Event::TaskAnnounced { task: 3 }).unwrap() - 1;
-    let in_use = roles(idle).iter().filter(|role| **role != Role::Redundant).count();
-    assert!(in_use <= 2, "{:?}", roles(idle));
+    assert!(used(&mission.periods[idle].snapshot) <= 2, "{:?}", roles(idle));
     assert!(mission.periods[idle].snapshot.serviced.is_empty());
     assert!(mission.last().serviced.is_empty());
 }

@@ -153,7 +153,7 @@ fn no_loss_of_messages_overloads_robots_under_stress() {
         Kind::Silence,
     ];
     for (number, scenario) in stressed_scenarios().enumerate() {
-        let scenario = ValidScenario::new(scenario).expect("it is valid");
+        let scenario = valid(scenario);
         for kind in kinds {
             for seed in 0..3 {
                 let storm = draw(kind, seed, &scenario, DURATION);
@@ -413,7 +413,7 @@ fn a_robot_restarts_at_the_tick_of_the_others() {
     for period in [0.01, 0.3, 0.7] {
         let mut scenario = shipped("leaf-leader");
         scenario.control.period = Some(period);
-        let scenario = ValidScenario::new(scenario).unwrap();
+        let scenario = valid(scenario);
         let time = |step: f64| step * period;
         let crash = Crash { time: time(50.0), inputs: 0, back: Some(time(70.0)) };
         let nodes = vec![(3, NodeFaults { crash: Some(crash), ..NodeFaults::default() })];
