@@ -60,12 +60,12 @@ impl KernelTimes {
         }
     }
 
-    /// The part that a stage belongs to.
-    const fn of(&mut self, stage: Stage) -> &mut Duration {
-        match stage {
-            Stage::Moving | Stage::Beacons => &mut self.coordination,
-            Stage::Planning => &mut self.motion,
-            Stage::Negotiation => &mut self.acceptance,
+    /// The part that a round belongs to which takes a robot from one stage to another.
+    const fn of(&mut self, from: Stage, to: Stage) -> &mut Duration {
+        match (from, to) {
+            (Stage::Moving | Stage::Beacons, _) => &mut self.coordination,
+            (Stage::Reserving, Stage::Negotiation) => &mut self.motion,
+            (Stage::Negotiation, _) => &mut self.acceptance,
             _ => &mut self.routing,
         }
     }
@@ -218,6 +218,12 @@ impl<M, N: RobotNode> Network<M, N> {
         self.members().filter_map(|member| member.view().robot()).collect()
     }
 
+    /// Where the first robot stands in its control period, as the others do: time passes for all of them at once.
+    fn stage(&self) -> Stage {
+        let first = self.members().next().and_then(|member| member.view().robot());
+        first.map_or(Stage::Moving, RobotView::stage)
+    }
+
     fn members(&self) -> impl Iterator<Item = &Member> {
         self.nodes.nodes().iter().map(RobotNode::member)
     }
@@ -294,11 +300,10 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
             self.events.clear();
             self.nodes.forget_traffic();
         }
-        let first = self.members().next().and_then(|member| member.view().robot());
-        let stage = first.map_or(Stage::Moving, RobotView::stage);
+        let before = self.stage();
         let begin = Instant::now();
         self.nodes.jump(round)?;
-        *self.times.of(stage) += begin.elapsed();
+        *self.times.of(before, self.stage()) += begin.elapsed();
         self.events.extend(self.nodes.drain_reports().map(|(_, event)| event));
         Ok(())
     }
@@ -320,27 +325,27 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
 
 #[cfg(test)]
 mod tests {
-    use pleach_discrete::Location;
+    use pleach_discrete::network::{CONTROL, StageEvent as On};
 
     use super::*;
 
-    /// Each stage adds to one part, and the parts to the whole.
+    /// Each round adds to one part, and the parts to the whole.
     #[test]
-    fn the_time_of_a_stage_counts_for_one_part() {
-        let spent = |stage: Stage| {
+    fn the_time_of_a_round_counts_for_one_part() {
+        let spent = |from: Stage, to: Stage| {
             let mut times = KernelTimes::default();
-            *times.of(stage) += Duration::from_secs(1);
+            *times.of(from, to) += Duration::from_secs(1);
             let KernelTimes { coordination, routing, motion, acceptance } = times;
             [coordination, routing, motion, acceptance].map(|part| part.as_secs())
         };
-        for &stage in Stage::ALL {
-            let expected = match stage {
-                Stage::Moving | Stage::Beacons => [1, 0, 0, 0],
-                Stage::Planning => [0, 0, 1, 0],
-                Stage::Negotiation => [0, 0, 0, 1],
+        for row in CONTROL.rows() {
+            let expected = match row.event {
+                On::SampleDue | On::NextRound | On::RoutesDue | On::OldFlowsDue => [1, 0, 0, 0],
+                On::RoutesDone => [0, 0, 1, 0],
+                On::ProposalsHeard | On::NextAttempt | On::MoveCertified => [0, 0, 0, 1],
                 _ => [0, 1, 0, 0],
             };
-            assert_eq!(spent(stage), expected, "{stage:?}");
+            assert_eq!(spent(row.source, row.target), expected, "{:?}", row.event);
         }
     }
 

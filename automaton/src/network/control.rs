@@ -29,8 +29,6 @@ stages! {
     Sweeps,
     /// It waits for the answers of those to which it sends.
     Reserving,
-    /// It is about to propose a move.
-    Planning,
     /// It waits for proposals and objections, in turn.
     Negotiation,
 }

@@ -22,8 +22,6 @@ vocabulary! {
         Sweeps = "sweeps",
         /// Grants of the flows that it plans.
         Reserving = "reserving",
-        /// Nothing: it is about to propose a move.
-        Planning = "planning",
         /// In turn, proposals of moves and objections to its own.
         Negotiation = "negotiation",
     }
@@ -58,10 +56,8 @@ vocabulary! {
         ReliefsHeard = "reliefs heard",
         /// Requests have been answered, or are made again.
         GrantsHeard = "grants heard",
-        /// No flow changes any more in this period.
+        /// No flow changes any more in this period, so that a move is due.
         RoutesDone = "routes done",
-        /// The routes are as they will be.
-        MoveDue = "move due",
         /// Every neighbour has sent its proposal.
         ProposalsHeard = "proposals heard",
         /// Every neighbour has objected that has to, and moves are judged once more.
@@ -112,8 +108,7 @@ pub const CONTROL: TransitionTable<Stage, StageEvent> = {
         row(Sweeps, On::ShortagesHeard, Sweeps),
         row(Sweeps, On::ReliefsHeard, Sweeps),
         row(Reserving, On::GrantsHeard, Reserving),
-        row(Reserving, On::RoutesDone, Planning),
-        row(Planning, On::MoveDue, Negotiation),
+        row(Reserving, On::RoutesDone, Negotiation),
         row(Negotiation, On::ProposalsHeard, Negotiation),
         row(Negotiation, On::NextAttempt, Negotiation),
         row(Negotiation, On::MoveCertified, Moving),
@@ -150,7 +145,9 @@ mod tests {
         for &stage in Stage::ALL {
             assert!(!CONTROL.unreachable_from(stage).contains(&Stage::Moving), "{stage:?}");
         }
-        let into_planning = CONTROL.rows().iter().filter(|row| row.target == Stage::Planning);
-        assert!(into_planning.map(|row| row.event).eq([StageEvent::RoutesDone]));
+        let leads_to_moves =
+            |row: &&Row<_, _>| row.target == Stage::Negotiation && row.source != Stage::Negotiation;
+        let into_negotiation = CONTROL.rows().iter().filter(leads_to_moves);
+        assert!(into_negotiation.map(|row| row.event).eq([StageEvent::RoutesDone]));
     }
 }

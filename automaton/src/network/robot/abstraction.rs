@@ -301,6 +301,7 @@ impl Robot {
             clock: _,
             routing: _,
             links: _,
+            link_terms: _,
             flows: _,
             upstream: _,
             expected_link: _,
@@ -322,6 +323,7 @@ impl Robot {
             has_untold_flows: _,
             has_new_multipliers: _,
             has_come_to_rest: _,
+            links_stand: _,
             is_unsettled: _,
             destination: _,
             target: _, // by the announcement

@@ -14,7 +14,7 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 use super::{Robot, RobotError};
 use crate::network::act::{self, acting};
 use crate::network::control::{
-    Beacons, Control, Iterations, Moving, Negotiation, OldFlows, Planning, Reserving, Sweeps,
+    Beacons, Control, Iterations, Moving, Negotiation, OldFlows, Reserving, Sweeps,
 };
 use crate::network::member::NodeOutputs;
 
@@ -274,14 +274,11 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
             &[SettleFlows],
             |_: &Reserving| Reserving,
         ))
-        .carried_out(row(On::RoutesDone, guards::routes_done(), &[EndRoutes], |_: &Reserving| {
-            Planning
-        }))
         .carried_out(row(
-            On::MoveDue,
-            guards::heard(),
-            &[Propose, TellProposal, CountRounds],
-            |_: &Planning| Negotiation,
+            On::RoutesDone,
+            guards::routes_done(),
+            &[EndRoutes, Propose, TellProposal, CountRounds],
+            |_: &Reserving| Negotiation,
         ))
         .carried_out(row(
             On::ProposalsHeard,

@@ -330,7 +330,7 @@ impl Robot {
 
     /// What the robot hears has changed.
     pub(super) fn receive_news(&mut self) {
-        (self.has_news, self.is_unmeasured) = (true, true);
+        (self.has_news, self.is_unmeasured, self.links_stand) = (true, true, false);
     }
 
     /// The geodesic length of the link to a neighbour.

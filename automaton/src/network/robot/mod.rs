@@ -99,6 +99,7 @@ use neighbours::Neighbours;
 use partner::Answered;
 use reservation::{HeldFlow, Reservation};
 use rounds::Rounds;
+use routing::LinkTerms;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
 const FIRST_NEW_POST: u32 = 1 << 31;
@@ -152,6 +153,8 @@ pub struct Robot {
     has_new_multipliers: bool,
     /// The last dual step has changed nothing. ADAL does not come to rest.
     has_come_to_rest: bool,
+    /// Its links are those that it would find now.
+    links_stand: bool,
     is_unsettled: bool,
     must_judge_moves: bool,
 
@@ -164,6 +167,7 @@ pub struct Robot {
 
     // Its routes.
     links: Vec<RouteLink>,
+    link_terms: Vec<LinkTerms>,
     /// The link whose other end is expected to tell its multiplier next.
     expected_link: usize,
     routing: routing::RoutingState,
@@ -377,6 +381,7 @@ impl Robot {
             followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            link_terms: Vec::new(),
             flows: Vec::new(),
             dual_step_size: 0.0,
             told_report: None,
@@ -398,6 +403,7 @@ impl Robot {
             has_untold_flows: false,
             has_new_multipliers: false,
             has_come_to_rest: false,
+            links_stand: false,
             is_unsettled: true,
             destination: None,
             waypoint: None,
@@ -594,7 +600,7 @@ impl Robot {
 
     /// Processes what it has received, whether or not it contains news.
     fn process_messages(&mut self) -> Result<(), TransitionError> {
-        (self.has_unsent_news, self.is_unmeasured) = (true, true);
+        (self.has_unsent_news, self.is_unmeasured, self.links_stand) = (true, true, false);
         self.advance_exchange()?;
         self.locate_wrecks();
         self.locate_branches();
@@ -621,9 +627,10 @@ impl Robot {
         Ok(jumped)
     }
 
-    /// The robot's state has changed: it has to deliberate, to send its state and to measure its facts.
+    /// The robot's state has changed: it has to deliberate, to send its state, to measure its facts and to find its links.
     fn note_change(&mut self) {
-        (self.has_news, self.has_unsent_news, self.is_unmeasured) = (true, true, true);
+        (self.has_news, self.has_unsent_news) = (true, true);
+        (self.is_unmeasured, self.links_stand) = (true, false);
     }
 
     /// A control period begins or ends: its state has changed with that, unless nothing depends on it.

@@ -189,7 +189,12 @@ impl Robot {
         if node >= self.site.robots {
             return true;
         }
-        let Some(known) = self.neighbour(node) else { return false };
+        let Ok(at) = self.neighbours.place_of(node) else { return false };
+        if self.hears_all && !self.is_behind {
+            debug_assert_eq!(self.neighbours[at].heard_in, self.period, "robot {}", self.id);
+            return true;
+        }
+        let known = &self.neighbours[at];
         let has_consented =
             |&(mover, period): &(NodeId, u32)| mover == node && period >= known.heard_in;
         known.heard_in == self.period

@@ -16,6 +16,7 @@ use pleach_continuous::network::routing::repair::{Share, meet_demand};
 use pleach_discrete::network::NodeId;
 
 use super::Robot;
+use super::hearing::Neighbour;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 use crate::network::record::MissionEvent;
@@ -60,10 +61,6 @@ pub struct RouteLink {
     pub to: NodeId,
     /// R_ij.
     pub reliability: f64,
-    /// w_ij.
-    pub weight: f64,
-    /// How the neighbour last reported its equation to stand; none for an access point.
-    pub report: Option<NeighbourReport>,
     /// T_ij.
     pub share: f64,
     /// T_ij as the routing method left it, before the sweep.
@@ -74,10 +71,29 @@ pub struct RouteLink {
     pub(super) is_retiring: bool,
 }
 
+/// What the shares of a link are chosen by, beside its reliability. It stands apart from the link, as most rounds of a
+/// control period have no use for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LinkTerms {
+    /// The receiver.
+    to: NodeId,
+    /// w_ij.
+    weight: f64,
+    /// How the receiver last reported its equation to stand; none for an access point.
+    report: Option<NeighbourReport>,
+}
+
 impl RouteLink {
     /// F_ij = T_ij R_ij.
     pub fn flow(&self) -> f64 {
         self.share * self.reliability
+    }
+
+    /// A control period begins: nothing is told, and shares are as the routing method left them.
+    fn begin_period(&mut self) {
+        if (self.share, self.told) != (self.iterate, 0.0) {
+            (self.share, self.told) = (self.iterate, 0.0);
+        }
     }
 
     /// A share that the routing method gives it, if it is used.
@@ -92,56 +108,59 @@ pub(super) fn link_at(links: &[RouteLink], node: NodeId) -> Option<usize> {
 }
 
 impl Robot {
-    /// Finds the links over which the robot may send from here, keeping what it knows of them.
+    /// A control period's routes begin: with the links over which the robot may send from here, and with what the routing
+    /// method made of them in the period before. Links that have been found stand until something changes.
     pub(super) fn survey_links(&mut self) {
+        if self.links_stand {
+            debug_assert!(self.may_skip(Self::are_links_found), "robot {}: old links", self.id);
+            self.links.iter_mut().for_each(RouteLink::begin_period);
+        } else {
+            (self.links, self.link_terms) = self.find_links();
+            self.upstream = self.tree_parent();
+            self.drop_flows_without_link();
+            self.dual_step_size = self.safe_dual_step();
+            // One that is retiring goes with its flow.
+            self.links_stand = !self.links.iter().any(|link| link.is_retiring);
+        }
         (self.has_no_reserve, self.has_shortage_news) = (false, false);
         (self.has_untold_flows, self.is_unsettled) = (true, true);
-        let tree = self.tree_links();
-        let mut links = std::mem::take(&mut self.links);
-        let mut at = 0;
-        let aversion = self.site.settings.slope_aversion;
-        for neighbour in self.neighbours.iter() {
-            let to = neighbour.id();
-            let reliability = neighbour.reliability;
-            let in_tree = tree.iter().any(|link| link.to == to);
-            while links.get(at).is_some_and(|link| link.to < to) {
-                links.remove(at);
-            }
-            let known = links.get(at).filter(|link| link.to == to).copied();
-            let at_worst = self.site.link.reliability(neighbour.distance + 2.0 * self.stray());
-            let is_retiring = at_worst < LEAST_USEFUL_RELIABILITY && !in_tree;
-            if is_retiring && !self.sends_to(to) || reliability <= 0.0 {
-                continue;
-            }
-            let iterate = known.filter(|_| !is_retiring).map_or(0.0, |link| link.iterate);
-            let link = RouteLink {
-                to,
-                reliability,
-                weight: weight(aversion, &self.site.link, neighbour.distance),
-                report: known.and_then(|link| link.report),
-                share: iterate,
-                iterate,
-                told: 0.0,
-                is_retiring,
-            };
-            match known {
-                // Most are as before, and what is not written is not copied between memory and cache.
-                Some(before) if before == link => {}
-                Some(_) => links[at] = link,
-                None => links.insert(at, link),
-            }
-            at += 1;
-        }
-        links.truncate(at);
-        self.links = links;
-        self.drop_flows_without_link();
-        self.expected_link = 0;
-        self.dual_step_size = self.safe_dual_step();
         (self.told_report, self.has_come_to_rest) = (None, false);
-        self.upstream = self.tree_parent();
+        self.expected_link = 0;
         self.inflow = 0.0;
         self.inflows.clear();
         self.demands.clear();
+    }
+
+    /// The links over which the robot may send from here, with what it knows of them.
+    fn find_links(&self) -> (Vec<RouteLink>, Vec<LinkTerms>) {
+        let tree = self.tree_links();
+        let aversion = self.site.settings.slope_aversion;
+        let link_to = |neighbour: &Neighbour| {
+            let (to, reliability) = (neighbour.id(), neighbour.reliability);
+            let in_tree = tree.iter().any(|link| link.to == to);
+            let at_worst = self.site.link.reliability(neighbour.distance + 2.0 * self.stray());
+            let is_retiring = at_worst < LEAST_USEFUL_RELIABILITY && !in_tree;
+            if is_retiring && !self.sends_to(to) || reliability <= 0.0 {
+                return None;
+            }
+            let known = link_at(&self.links, to);
+            let kept = known.filter(|_| !is_retiring);
+            let iterate = kept.map_or(0.0, |at| self.links[at].iterate);
+            let (share, told) = (iterate, 0.0);
+            let weight = weight(aversion, &self.site.link, neighbour.distance);
+            let report = known.and_then(|at| self.link_terms[at].report);
+            let link = RouteLink { to, reliability, share, iterate, told, is_retiring };
+            Some((link, LinkTerms { to, weight, report }))
+        };
+        self.neighbours.iter().filter_map(link_to).collect()
+    }
+
+    /// Whether it would find the links that it has, and the parent to which it sends its demand.
+    fn are_links_found(&self) -> bool {
+        let mut links = self.links.clone();
+        links.iter_mut().for_each(RouteLink::begin_period);
+        let found = self.find_links();
+        (links, &self.link_terms) == (found.0, &found.1) && self.upstream == self.tree_parent()
     }
 
     /// λ_i.
@@ -184,10 +203,10 @@ impl Robot {
         report: NeighbourReport,
         parent: Option<NodeId>,
     ) {
-        if let Some(link) = self.link_to(from)
-            && link.report != Some(report)
+        if let Some(terms) = self.terms_of(from)
+            && terms.report != Some(report)
         {
-            link.report = Some(report);
+            terms.report = Some(report);
             self.has_new_multipliers = true;
         }
         if parent == Some(self.id)
@@ -197,19 +216,19 @@ impl Robot {
         }
     }
 
-    /// The link over which the robot may send to `node`. Multipliers of an iteration mostly come in
-    /// the order of their senders.
-    fn link_to(&mut self, node: NodeId) -> Option<&mut RouteLink> {
-        let at = self.expected_link;
-        let follows = at.checked_sub(1).and_then(|last| self.links.get(last));
+    /// The terms of the link over which the robot may send to `node`. Multipliers of an iteration mostly come in the
+    /// order of their senders.
+    fn terms_of(&mut self, node: NodeId) -> Option<&mut LinkTerms> {
+        let (terms, at) = (&mut self.link_terms, self.expected_link);
+        let follows = at.checked_sub(1).and_then(|last| terms.get(last));
         let comes_next = follows.is_none_or(|last| last.to < node)
-            && self.links.get(at).is_none_or(|link| node <= link.to);
+            && terms.get(at).is_none_or(|next| node <= next.to);
         if !comes_next {
-            self.expected_link = self.links.partition_point(|link| link.to < node);
+            self.expected_link = terms.partition_point(|link| link.to < node);
         }
-        let link = self.links.get_mut(self.expected_link).filter(|link| link.to == node)?;
+        let terms = terms.get_mut(self.expected_link).filter(|link| link.to == node)?;
         self.expected_link += 1;
-        Some(link)
+        Some(terms)
     }
 
     /// The primal iteration (13), or that of ADAL. Shares that minimise the local Lagrangian do so until a multiplier
@@ -231,6 +250,10 @@ impl Robot {
         self.has_untold_flows = true;
     }
 
+    fn links_with_terms(&self) -> impl Iterator<Item = (&RouteLink, &LinkTerms)> {
+        self.links.iter().zip(&self.link_terms)
+    }
+
     fn minimise_locally(&mut self) {
         let shares = self.minimiser();
         for (link, share) in self.links.iter_mut().zip(shares) {
@@ -241,12 +264,11 @@ impl Robot {
     /// The shares that minimise the local Lagrangian, eq. (13).
     fn minimiser(&self) -> Vec<f64> {
         let offers: Vec<LinkOffer> = self
-            .links
-            .iter()
-            .map(|link| LinkOffer {
+            .links_with_terms()
+            .map(|(link, terms)| LinkOffer {
                 reliability: link.reliability,
-                weight: link.weight,
-                neighbour_multiplier: link.report.map_or(0.0, |report| report.multiplier),
+                weight: terms.weight,
+                neighbour_multiplier: terms.report.map_or(0.0, |report| report.multiplier),
             })
             .collect();
         let mut shares = Vec::with_capacity(offers.len());
@@ -263,13 +285,12 @@ impl Robot {
     /// Part of the way to the shares that minimise the local augmented Lagrangian.
     fn approach_minimiser(&mut self, mut state: AdalRobot) {
         let mut links: Vec<AdalLink> = self
-            .links
-            .iter()
-            .map(|link| AdalLink {
+            .links_with_terms()
+            .map(|(link, terms)| AdalLink {
                 reliability: link.reliability,
-                weight: link.weight,
+                weight: terms.weight,
                 share: link.share,
-                report: link.report,
+                report: terms.report,
             })
             .collect();
         state.primal_step(&mut links, &AdalSettings::default(), &mut Workspace::default());
@@ -328,20 +349,24 @@ impl Robot {
         self.links.iter().map(RouteLink::flow).sum()
     }
 
-    /// out − in − r with the flows known now.
-    fn balance(&self) -> f64 {
-        self.outflow() - self.inflow - self.rate
-    }
-
-    /// The dual iteration (14), or that of ADAL. Where its flows are those that it has told, it need not look at its
-    /// links.
-    pub(super) fn dual_step(&mut self) {
-        self.add_up_inflow();
+    /// What flows out. Where its flows are those that it has told, it need not look at its links.
+    fn known_outflow(&self) -> f64 {
         if self.has_untold_flows {
-            self.told_outflow = self.outflow();
+            return self.outflow();
         }
         debug_assert!(self.may_skip(Self::outflow_stands), "robot {} overlooks its flows", self.id);
-        let residual = self.told_outflow - self.inflow - self.rate;
+        self.told_outflow
+    }
+
+    /// out − in − r with the flows known now.
+    fn balance(&self) -> f64 {
+        self.known_outflow() - self.inflow - self.rate
+    }
+
+    /// The dual iteration (14), or that of ADAL.
+    pub(super) fn dual_step(&mut self) {
+        self.add_up_inflow();
+        let residual = self.balance();
         let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
         let (before, multiplier) = (self.routing, self.multiplier());
         match &mut self.routing {
@@ -371,9 +396,9 @@ impl Robot {
     /// ε of (14), from the links that meet in this robot's equation.
     pub(super) fn safe_dual_step(&self) -> f64 {
         let robots = self.site.robots;
-        safe_step(self.links.iter().map(|link| LinkCurvature {
+        safe_step(self.links_with_terms().map(|(link, terms)| LinkCurvature {
             reliability: link.reliability,
-            weight: link.weight,
+            weight: terms.weight,
             to_access_point: link.to >= robots,
         }))
     }

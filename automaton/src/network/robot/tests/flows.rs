@@ -77,6 +77,30 @@ fn links_are_those_that_are_reliable_enough_or_of_the_tree() {
     assert_eq!(links(2.0, false, 0.1), None, "no packets get there");
 }
 
+/// As long as nothing changes, a control period begins with the links of the one before.
+#[test]
+fn links_are_found_anew_when_something_has_changed() {
+    let mut robot = router();
+    let found = |robot: &mut Robot| {
+        robot.links[0].share += 0.1;
+        robot.survey_links();
+        let link = robot.links[0];
+        (link.to, link.share, robot.links.len(), robot.upstream)
+    };
+    assert!(robot.links_stand);
+    assert_eq!(found(&mut robot), (5, 0.0, 2, Some(ROBOTS)));
+    robot.hears(beacon(4, east(1.0), fixed(14, 13), &[13, 14]));
+    assert!(!robot.links_stand);
+    assert_eq!(found(&mut robot), (4, 0.0, 3, Some(ROBOTS)));
+    robot.holds(Post { parent: Some(Anchor::Post(PostId(13))), ..fixed(20, 0) });
+    robot.note_change();
+    assert_eq!(found(&mut robot), (4, 0.0, 3, Some(5)));
+    robot.held_flow(4).flow = 0.1;
+    robot.hears(beacon(4, east(robot.site.link.distance_at(0.2)), fixed(14, 13), &[13, 14]));
+    robot.survey_links();
+    assert!(!robot.links_stand, "one that is retiring goes with its flow");
+}
+
 /// F_ij up to what is planned and granted, and for all the time that the sender has.
 #[test]
 fn a_flow_is_raised_to_what_is_planned_and_granted() {

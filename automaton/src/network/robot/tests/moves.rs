@@ -145,6 +145,19 @@ fn a_robot_relies_on_robots_that_it_has_heard_in_this_period() {
     assert!(is_unsure(beacon(5, west(1.0), fixed(13, 14), &[13, 14])));
 }
 
+/// A robot that has heard all its neighbours does not look at each; one that is ahead of it may have moved since.
+#[test]
+fn a_robot_that_hears_all_knows_where_they_are_unless_they_are_ahead() {
+    let mut robot = attached_mover();
+    let other = || beacon(5, west(1.0), fixed(13, 14), &[13, 14]);
+    robot.hears(other());
+    robot.hears_all = true;
+    assert!(robot.knows_place_of(5) && !robot.knows_place_of(4));
+    robot.is_new = false;
+    robot.hear_beacon(robot.period + 1, None, &Arc::new(other()));
+    assert!(!robot.knows_place_of(5));
+}
+
 #[test]
 fn a_robot_that_gets_nowhere_counts_the_periods() {
     let mut robot = mover();
