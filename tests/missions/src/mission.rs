@@ -146,6 +146,16 @@ impl Mission {
         Mission { periods: self.periods[..=last].to_vec(), ..self.clone() }
     }
 
+    /// Its trace, as the file holds it.
+    pub fn trace(&self) -> Vec<u8> {
+        let mut writer = TraceWriter::new(Vec::new(), &self.scenario).unwrap();
+        for period in &self.periods {
+            writer.observe(&period.snapshot, &period.events).unwrap();
+        }
+        writer.end(&self.end).unwrap();
+        writer.finish().unwrap()
+    }
+
     /// The number of tasks serviced.
     pub fn serviced(&self) -> usize {
         let serviced = |(_, event): &(usize, &MissionEvent)| {
