@@ -1,6 +1,6 @@
 //! The shipped scenarios as whole missions: how each ends, the story it was made to tell, and that an oracle that knows
-//! nothing of the monitor notices what is wrong in a trace. That it agrees with the monitor on all of them: `cargo test -p
-//! missions`.
+//! nothing of the monitor notices what is wrong in a trace. `cargo test -p missions` shows that it agrees with the monitor
+//! on all of them.
 
 use missions::oracle::audit;
 use missions::{Mission, Period, shipped_mission, shipped_names};

@@ -10,7 +10,8 @@ use pleach_guards::{Expression, Substitution, constant};
 use thiserror::Error;
 
 use crate::coordinates::Coordinate;
-use crate::outline::{self, mapped};
+use crate::lists::mapped;
+use crate::outline;
 
 /// The flow of a location.
 ///

@@ -31,6 +31,7 @@ pub mod edge;
 pub mod executor;
 pub mod flow;
 pub mod law;
+mod lists;
 pub mod located;
 pub mod moment;
 pub mod named;

@@ -14,6 +14,7 @@ use pleach_guards::{Guard, Predicate, Substitution, Valuation, constant};
 use crate::automaton::Automaton;
 use crate::flow::{Flow, Rate};
 use crate::law::Command;
+use crate::lists::{names_of, place_of};
 use crate::reset::{Assignment, listed};
 
 pub(crate) struct Outline<'a> {
@@ -171,23 +172,4 @@ pub(crate) fn range_of(
 ) -> RangeInclusive<f64> {
     let declared = ranges.iter().find(|(variable, _)| variable == name);
     declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
-}
-
-/// The place of one among all.
-pub(crate) fn place_of<T: Copy + PartialEq>(all: &[T], one: T) -> Option<usize> {
-    all.iter().position(|listed| *listed == one)
-}
-
-pub(crate) fn names_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<&'static str> {
-    mapped(all, |one| name(*one))
-}
-
-/// As `all.into_iter().map(change).collect()`, in a quarter of the code, which counts, since it is compiled for the types
-/// of each automaton.
-pub(crate) fn mapped<A, B>(all: impl IntoIterator<Item = A>, change: impl Fn(A) -> B) -> Vec<B> {
-    let mut changed = Vec::new();
-    for one in all {
-        changed.push(change(one));
-    }
-    changed
 }

@@ -8,7 +8,8 @@ use std::sync::Arc;
 use pleach_guards::{EvaluationError, Expression, Substitution, Valuation};
 
 use crate::coordinates::Coordinates;
-use crate::outline::{Effect, mapped};
+use crate::lists::mapped;
+use crate::outline::Effect;
 
 /// The reset of a transition.
 ///

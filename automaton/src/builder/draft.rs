@@ -8,7 +8,7 @@ use super::BuildError;
 use super::parts::{Given, Parts};
 use crate::flow::Rate;
 use crate::law::Command;
-use crate::outline::place_of;
+use crate::lists::place_of;
 use crate::reset::NewValue;
 
 /// The parts, with the names that the types give to locations and events.

@@ -252,8 +252,8 @@ impl Robot {
             followed_post,
             closed,
             posts_made,
-            neighbours: _, // by their beacons and their silence
-            hears_all: _,  // by their silence
+            neighbours: _,   // by their beacons and their silence
+            heard_all_in: _, // by their silence
             // Constant.
             rate: _,
             site: _,

@@ -249,15 +249,15 @@ impl Robot {
     pub(super) fn end_round(&mut self) {
         self.heard_up_to = 0;
         let counts_silence = self.round_count.count() <= ROUNDS_TO_BE_HEARD;
-        let mut at = 0;
-        let mut hears_all = true;
+        let (mut at, mut hears_all) = (0, true);
         while let Some(known) = self.neighbours.get_mut(at) {
             let is_heard = std::mem::take(&mut known.is_heard);
-            hears_all &= is_heard;
+            // A message may have arrived after the last round of the period before.
+            hears_all &= is_heard && known.heard_in == self.period;
             at = if is_heard || !counts_silence { at + 1 } else { self.miss(at) };
         }
         if counts_silence {
-            self.hears_all = hears_all;
+            self.heard_all_in = hears_all.then_some(self.period);
         }
     }
 

@@ -137,8 +137,8 @@ pub struct Robot {
     awaits_confirmation: bool,
     /// Another node has begun the next control period.
     is_behind: bool,
-    /// Whether it has heard all its neighbours in the last round in which all robots send.
-    hears_all: bool,
+    /// The last control period in which it has heard all its neighbours in the last round in which all robots send.
+    heard_all_in: Option<u32>,
     /// Whether this is its first period.
     is_new: bool,
     is_quiet: bool,
@@ -315,7 +315,7 @@ impl Robot {
             control: Current::new(Control::Moving(Moving)),
             round_count: Rounds::default(),
             acts: &[],
-            hears_all: false,
+            heard_all_in: None,
             is_new: true,
             is_behind: false,
             position,

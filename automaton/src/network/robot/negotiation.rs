@@ -190,8 +190,9 @@ impl Robot {
             return true;
         }
         let Ok(at) = self.neighbours.place_of(node) else { return false };
-        if self.hears_all && !self.is_behind {
-            debug_assert_eq!(self.neighbours[at].heard_in, self.period, "robot {}", self.id);
+        if self.heard_all_in == Some(self.period) && !self.is_behind {
+            let heard_in = self.neighbours[at].heard_in;
+            debug_assert_eq!(heard_in, self.period, "robot {} has not heard all", self.id);
             return true;
         }
         let known = &self.neighbours[at];

@@ -37,39 +37,39 @@ impl Deref for Neighbours {
 
 impl Neighbours {
     /// Where a node stands, or where it would.
-    pub fn place_of(&self, id: NodeId) -> Result<usize, usize> {
+    pub(super) fn place_of(&self, id: NodeId) -> Result<usize, usize> {
         self.keys.binary_search_by_key(&id, |key| key.id as usize)
     }
 
     /// Those that hold `post`.
-    pub fn holders(&self, post: PostId) -> impl Iterator<Item = &Neighbour> {
+    pub(super) fn holders(&self, post: PostId) -> impl Iterator<Item = &Neighbour> {
         let holds = move |(_, key): &(&Neighbour, &Key)| key.post == Some(post);
         self.table.iter().zip(&self.keys).filter(holds).map(|(neighbour, _)| neighbour)
     }
 
-    pub fn insert(&mut self, at: usize, neighbour: Neighbour) {
+    pub(super) fn insert(&mut self, at: usize, neighbour: Neighbour) {
         self.keys.insert(at, Key::of(&neighbour));
         self.table.insert(at, neighbour);
     }
 
     /// The same node as last heard.
-    pub fn replace(&mut self, at: usize, neighbour: Neighbour) {
+    pub(super) fn replace(&mut self, at: usize, neighbour: Neighbour) {
         self.keys[at] = Key::of(&neighbour);
         self.table[at] = neighbour;
     }
 
-    pub fn remove(&mut self, at: usize) -> Neighbour {
+    pub(super) fn remove(&mut self, at: usize) -> Neighbour {
         self.keys.remove(at);
         self.table.remove(at)
     }
 
     /// The neighbour there, for all but its beacon.
-    pub fn get_mut(&mut self, at: usize) -> Option<&mut Neighbour> {
+    pub(super) fn get_mut(&mut self, at: usize) -> Option<&mut Neighbour> {
         self.table.get_mut(at)
     }
 
     /// All of them, for all but their beacons.
-    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Neighbour> {
+    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Neighbour> {
         self.table.iter_mut()
     }
 }

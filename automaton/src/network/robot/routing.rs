@@ -91,6 +91,7 @@ impl RouteLink {
 
     /// A control period begins: nothing is told, and shares are as the routing method left them.
     fn begin_period(&mut self) {
+        // Most are so, and what is not written is not copied between memory and cache.
         if (self.share, self.told) != (self.iterate, 0.0) {
             (self.share, self.told) = (self.iterate, 0.0);
         }
@@ -219,14 +220,14 @@ impl Robot {
     /// The terms of the link over which the robot may send to `node`. Multipliers of an iteration mostly come in the
     /// order of their senders.
     fn terms_of(&mut self, node: NodeId) -> Option<&mut LinkTerms> {
-        let (terms, at) = (&mut self.link_terms, self.expected_link);
-        let follows = at.checked_sub(1).and_then(|last| terms.get(last));
+        let (table, at) = (&mut self.link_terms, self.expected_link);
+        let follows = at.checked_sub(1).and_then(|last| table.get(last));
         let comes_next = follows.is_none_or(|last| last.to < node)
-            && terms.get(at).is_none_or(|next| node <= next.to);
+            && table.get(at).is_none_or(|next| node <= next.to);
         if !comes_next {
-            self.expected_link = terms.partition_point(|link| link.to < node);
+            self.expected_link = table.partition_point(|it| it.to < node);
         }
-        let terms = terms.get_mut(self.expected_link).filter(|link| link.to == node)?;
+        let terms = table.get_mut(self.expected_link).filter(|it| it.to == node)?;
         self.expected_link += 1;
         Some(terms)
     }

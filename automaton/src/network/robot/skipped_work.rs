@@ -1,5 +1,5 @@
 //! Work that a robot skips where nothing has changed: processing messages, telling its state, evaluating guards,
-//! finding and going through its links, choosing shares, and all of these where a control period is like the one before.
+//! looking at its neighbours, finding and going through its links, choosing shares, and all of these where a control period is like the one before.
 //!
 //! Skipping is right if the work would change nothing. Builds with debug assertions verify that for guards, facts,
 //! beacons, links and shares, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
@@ -42,7 +42,7 @@ impl Robot {
             && self.orphaned_periods == 0
             && self.roll.absent.is_empty()
             && self.wrecks.is_empty()
-            && self.hears_all
+            && self.heard_all_in.is_some_and(|period| period.saturating_add(1) >= self.period)
     }
 
     /// Whether its facts are as it has measured them, and no guard holds.
@@ -50,7 +50,7 @@ impl Robot {
         self.facts_now() == self.facts && self.is_at_rest()
     }
 
-    /// Whether what it knows of its links for the dual iteration is what these say.
+    /// Whether what it knows of its links for its balance and for the dual iteration is what these say.
     pub(super) fn outflow_stands(&self) -> bool {
         let known = [self.told_outflow, self.dual_step_size];
         known.map(f64::to_bits) == [self.outflow(), self.safe_dual_step()].map(f64::to_bits)

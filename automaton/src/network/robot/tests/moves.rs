@@ -151,11 +151,27 @@ fn a_robot_that_hears_all_knows_where_they_are_unless_they_are_ahead() {
     let mut robot = attached_mover();
     let other = || beacon(5, west(1.0), fixed(13, 14), &[13, 14]);
     robot.hears(other());
-    robot.hears_all = true;
+    robot.end_round();
+    assert_eq!(robot.heard_all_in, Some(robot.period));
     assert!(robot.knows_place_of(5) && !robot.knows_place_of(4));
     robot.is_new = false;
     robot.hear_beacon(robot.period + 1, None, &Arc::new(other()));
     assert!(!robot.knows_place_of(5));
+}
+
+/// With one round in a control period, nothing else would tell that it is silent.
+#[test]
+fn what_arrives_after_the_last_round_is_not_heard_in_the_next_period() {
+    let mut robot = attached_mover();
+    let other = Arc::new(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
+    let hear = |robot: &mut Robot| robot.hear_beacon(robot.period, None, &other);
+    hear(&mut robot);
+    robot.end_round();
+    hear(&mut robot);
+    robot.period += 1;
+    robot.end_round();
+    assert!(!robot.knows_place_of(5));
+    assert_eq!(robot.heard_all_in, None);
 }
 
 #[test]

@@ -204,7 +204,7 @@ fn who_gives_up_stepping_aside_asks_for_no_way() {
     robot.process_messages().expect("guards have values");
     robot.jump().expect("guards have values");
     robot.neighbours.iter_mut().for_each(|known| known.heard_in = NOW);
-    robot.hears_all = true;
+    robot.heard_all_in = Some(NOW);
     assert!(robot.next_beacon().way.is_some());
     robot.has_news = false;
     robot.propose().expect("guards have values");
