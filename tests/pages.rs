@@ -1,10 +1,9 @@
 //! What a page says of a trace is what the judge says of it.
 
-use missions::{shipped, valid};
+use missions::{shipped, traced, valid};
 use pleach::judge::{Verdict, judge};
-use pleach::mission;
 use pleach::page::of_trace;
-use pleach::trace::{TraceReader, TraceWriter};
+use pleach::trace::TraceReader;
 use serde_json::{Value, json};
 use std::sync::OnceLock;
 
@@ -12,10 +11,8 @@ use std::sync::OnceLock;
 fn lines() -> Vec<Value> {
     static TRACE: OnceLock<Vec<Value>> = OnceLock::new();
     let trace = TRACE.get_or_init(|| {
-        let scenario = valid(shipped("too-few"));
-        let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
-        mission::run(&scenario, &mut [&mut writer]).unwrap();
-        let text = String::from_utf8(writer.finish().unwrap()).unwrap();
+        let (bytes, _) = traced(&valid(shipped("too-few")));
+        let text = String::from_utf8(bytes).unwrap();
         text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
     });
     trace.clone()

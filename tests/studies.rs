@@ -277,7 +277,7 @@ fn an_end_without_service_says_why() {
     assert_eq!(mission("unreachable").end.task, Some(1));
 }
 
-// ---- What an oracle finds in spoiled traces ------------------------------------------------------
+// ---- What an oracle finds in spoiled traces ---------------------------------------------------
 
 /// Each of these spoils one thing in a mission that is flawless otherwise.
 #[test]

@@ -1,11 +1,11 @@
 //! What is written into a trace can be read back, and is the same to the byte.
 
 use crate::common::{end, every_event, reports, room, show};
-use missions::{shipped, valid};
+use missions::{shipped, traced, valid};
 use pleach::automaton::network::record::{End, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Settings, Strategy};
 use pleach::judge::{Verdict, judge};
-use pleach::mission::{self, Watcher};
+use pleach::mission::Watcher;
 use pleach::trace::{TraceEntry, TraceError, TraceReader, TraceWriter};
 use pleach::verify::network::Property;
 use proptest::prelude::*;
@@ -99,9 +99,8 @@ fn a_trace_that_states_no_strategy_is_in_the_papers_order() {
     for strategy in [Strategy::Paper, Strategy::Eager] {
         let mut scenario = shipped("too-few");
         scenario.control.strategy = Some(strategy);
-        let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
-        mission::run(&valid(scenario), &mut [&mut writer]).unwrap();
-        let text = String::from_utf8(writer.finish().unwrap()).unwrap();
+        let (bytes, _) = traced(&valid(scenario));
+        let text = String::from_utf8(bytes).unwrap();
         let reader = TraceReader::new(text.as_bytes()).unwrap();
         assert_eq!(reader.scenario().control.strategy, Some(strategy));
         assert!(matches!(judge(reader).unwrap(), Verdict::Sound { .. }), "{strategy:?}");

@@ -12,13 +12,12 @@ mod spoils;
 
 use crate::generated::{keep_up_to_date, read};
 use change::{Change, Record};
-use missions::{Mission, Period, run, run_by, shipped};
+use missions::{Mission, Period, run, run_by, shipped, trace_of};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::automaton::network::scenario::Strategy;
 use pleach::discrete::network::activity::may_follow;
 use pleach::judge::{JudgeError, Verdict, judge};
-use pleach::mission::Watcher;
-use pleach::trace::{TraceReader, TraceWriter};
+use pleach::trace::TraceReader;
 use pleach::verify::network::{Judge, Property, Violation};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
@@ -41,12 +40,7 @@ fn missions() -> &'static [Mission] {
 
 /// The trace of a record as its file holds it.
 fn trace(scenario: &pleach::automaton::network::scenario::Scenario, record: &Record) -> Vec<u8> {
-    let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
-    for period in &record.periods {
-        writer.observe(&period.snapshot, &period.events).unwrap();
-    }
-    writer.end(&record.end).unwrap();
-    writer.finish().unwrap()
+    trace_of(scenario, &record.periods, &record.end)
 }
 
 /// What the judge says of a record whose periods before `site` are those of the mission;
@@ -222,7 +216,7 @@ fn a_trace_is_judged_alone() {
 #[track_caller]
 fn expect(property: Property, sentence: &str, change: impl Fn(&mut Vec<String>)) {
     let mission = &missions()[1];
-    let text = String::from_utf8(trace(&mission.scenario, &Record::of(mission))).unwrap();
+    let text = String::from_utf8(mission.trace()).unwrap();
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     change(&mut lines);
     let text = lines.join("\n");
@@ -257,7 +251,7 @@ fn a_trace_has_one_end() {
 #[test]
 fn a_trace_that_no_mission_starts_from_is_not_judged() {
     let mission = &missions()[1];
-    let text = String::from_utf8(trace(&mission.scenario, &Record::of(mission))).unwrap();
+    let text = String::from_utf8(mission.trace()).unwrap();
     let spoiled = text.replacen("\"full_range\":0.4", "\"full_range\":0.6", 1);
     assert_ne!(spoiled, text);
     let error = judge(TraceReader::new(spoiled.as_bytes()).unwrap()).unwrap_err();

@@ -20,6 +20,7 @@ pub use acts::{Acts, counted};
 pub use drawn::{Drawn, redundant, used};
 pub use medium::{Arrival, AskedTwice, Filtered, Passage, Through, Written};
 pub use mission::{
-    Mission, Period, network_over, run, run_by, run_over, run_unmonitored, shipped_mission, traced,
+    Mission, Period, network_over, run, run_by, run_over, run_unmonitored, shipped_mission,
+    trace_of, traced,
 };
 pub use scenarios::{files, read, shipped, shipped_names, valid};

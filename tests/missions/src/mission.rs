@@ -74,6 +74,16 @@ pub fn traced(scenario: &ValidScenario) -> (Vec<u8>, Completed) {
     (writer.finish().unwrap(), completed)
 }
 
+/// The trace of control periods that end like this, as its file holds it.
+pub fn trace_of(scenario: &Scenario, periods: &[Period], end: &End) -> Vec<u8> {
+    let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
+    for period in periods {
+        writer.observe(&period.snapshot, &period.events).unwrap();
+    }
+    writer.end(end).unwrap();
+    writer.finish().unwrap()
+}
+
 /// The mission of a scenario over a medium of the test's own, and its network.
 pub fn run_over<M: Medium<Message, Point>>(
     scenario: Scenario,
@@ -148,12 +158,7 @@ impl Mission {
 
     /// Its trace, as the file holds it.
     pub fn trace(&self) -> Vec<u8> {
-        let mut writer = TraceWriter::new(Vec::new(), &self.scenario).unwrap();
-        for period in &self.periods {
-            writer.observe(&period.snapshot, &period.events).unwrap();
-        }
-        writer.end(&self.end).unwrap();
-        writer.finish().unwrap()
+        trace_of(&self.scenario, &self.periods, &self.end)
     }
 
     /// The number of tasks serviced.

@@ -1,5 +1,6 @@
 //! Work that a robot skips where nothing has changed: processing messages, telling its state, evaluating guards,
-//! looking at its neighbours, finding and going through its links, choosing shares, and all of these where a control period is like the one before.
+//! looking at its neighbours, finding and going through its links, choosing shares, and all of these where a control
+//! period is like the one before.
 //!
 //! Skipping is right if the work would change nothing. Builds with debug assertions verify that for guards, facts,
 //! beacons, links and shares, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
