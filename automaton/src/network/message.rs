@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 
 use super::beacon::{Beacon, Bulletin};
 use super::order::Order;
-use super::robot::{FlowGrant, FlowRequest};
+use super::robot::{FlowGrant, FlowRequest, Probe};
 use super::roll::Roll;
 use super::wire;
 
@@ -70,6 +70,8 @@ pub enum Message {
     AskFlow(#[serde(with = "wire")] FlowRequest),
     /// The sender grants the receiver a flow towards itself.
     GrantFlow(#[serde(with = "wire")] FlowGrant),
+    /// Leases of flows wait to be renewed, the sender's to the receiver last: a circle of them is looked for.
+    Probe(#[serde(with = "wire")] Probe),
     /// The move that the sender intends, to all nodes in range.
     Proposal {
         /// The control period.
@@ -104,6 +106,7 @@ impl Message {
             self,
             Message::Demand(_)
                 | Message::Shortage
+                | Message::Probe(_)
                 | Message::News(_)
                 | Message::Proposal { witness: Some(_), .. }
         )

@@ -13,7 +13,7 @@ use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
 use super::order::Errand;
-use super::robot::{FlowGrant, FlowRequest};
+use super::robot::{FlowGrant, FlowRequest, Probe};
 use super::shared::Shared;
 
 /// A part of a message.
@@ -83,6 +83,12 @@ impl Numbers for FlowGrant {
     }
 }
 
+impl Numbers for Probe {
+    fn not_finite(&self) -> Option<f64> {
+        self.flow.not_finite()
+    }
+}
+
 impl Numbers for NeighbourReport {
     fn not_finite(&self) -> Option<f64> {
         let NeighbourReport { multiplier, mismatch, crowding } = self;
@@ -121,7 +127,7 @@ macro_rules! finite_parts {
     };
 }
 
-finite_parts!(f64, Point, Option<Point>, Segment, FlowRequest, FlowGrant, NeighbourReport);
+finite_parts!(f64, Point, Option<Point>, Segment, FlowRequest, FlowGrant, Probe, NeighbourReport);
 
 /// Distances, which are infinite where no way leads: written as none, since not every format has
 /// infinite numbers.

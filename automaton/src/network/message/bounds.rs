@@ -57,6 +57,10 @@ impl Bounds {
                     && is_period(*until)
                     && part.is_none_or(|part| is_period(part.until))
             }
+            Message::Probe(probe) => {
+                probe.robots.len() <= self.robots
+                    && probe.robots.iter().all(|&robot| self.has_robot(robot))
+            }
             Message::Request(order) => order.tasks.len() <= MOST_TASKS,
             Message::News(bulletin) => self.has_bulletin(bulletin.id(), bulletin.notice()),
             Message::Flow(_) | Message::Demand(_) | Message::Shortage => true,

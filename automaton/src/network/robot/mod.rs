@@ -17,6 +17,7 @@ mod absence;
 mod abstraction;
 mod attachment;
 mod bodies;
+mod circles;
 mod confirmation;
 mod control;
 mod duties;
@@ -61,6 +62,7 @@ use pleach_discrete::network::{
 
 #[cfg(feature = "abstraction")]
 pub(super) use abstraction::Numbers;
+pub use circles::Probe;
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use exchange::{Exchange, ExchangeAutomaton, ExchangeEffect, exchange_automaton};
@@ -92,6 +94,7 @@ use super::shared::Shared;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use bodies::Bodies;
+use circles::Circle;
 use duties::Label;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
@@ -192,6 +195,7 @@ pub struct Robot {
     flows: Vec<HeldFlow>,
     reservations: Vec<Reservation>,
     last_request: RequestNumber,
+    circle: Circle,
 
     // Where robots were that it does not hear any more or has only heard of, those that do not take part,
     // and those that are attached to it.
@@ -394,6 +398,7 @@ impl Robot {
             residual: 0.0,
             reservations: Vec::new(),
             last_request: RequestNumber::default(),
+            circle: Circle::default(),
             has_flow_news: false,
             has_swept: false,
             demands_passed_on: 0,

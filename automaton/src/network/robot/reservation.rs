@@ -33,6 +33,7 @@ use pleach_discrete::network::reservation::{Lease, Spare};
 use serde::{Deserialize, Serialize};
 
 use super::Robot;
+use super::circles::Circle;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
@@ -118,6 +119,10 @@ pub(super) struct HeldFlow {
     is_open: bool,
     /// Whether a request is to be made.
     is_due: bool,
+    /// Whether all of it has been granted for longer since the last control period began.
+    is_renewed: bool,
+    /// Whether packets flow to a robot that has not granted all of it for longer in the last control period.
+    waits: bool,
 }
 
 /// What a receiver keeps for a sender.
@@ -178,6 +183,16 @@ impl HeldFlow {
     /// Whether packets flow, or shall. Others have nothing to raise, to lower or to keep.
     const fn is_in_use(&self) -> bool {
         self.flow > 0.0 || self.wanted > 0.0
+    }
+
+    /// Whether its lease waits to be renewed.
+    pub const fn waits(&self) -> bool {
+        self.waits
+    }
+
+    /// Its receiver, and the flow that a probe goes along.
+    pub const fn probe_onward(&self) -> (NodeId, f64) {
+        (self.to, self.flow)
     }
 
     /// Whether the flow is to be raised or lowered.
@@ -261,12 +276,12 @@ fn ends(lease: &Lease<f64>) -> [u32; 2] {
     [lease.until(), lease.end()]
 }
 
-/// The part of a grant that does not depend on what is sent back to the robot that it is given to; no less than has been
-/// promised already for longer than all of it.
-fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow]) -> f64 {
+/// The part of a grant that does not depend on what is sent back to the robot that it is given to, at once or by way of
+/// others; no less than has been promised already for longer than all of it.
+fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow], circle: Circle) -> f64 {
     let sent_back = place_of(flows, from).map_or(0.0, |at| flows[at].flow);
     let promised = lease.part().map_or(0.0, |(part, _)| part);
-    (lease.flow() - sent_back).max(promised)
+    (lease.flow() - sent_back.max(circle.flow_from(from))).max(promised)
 }
 
 impl Robot {
@@ -298,7 +313,10 @@ impl Robot {
             let most = if can_raise { planned } else { planned.min(held.flow) };
             held.wanted = if is_retiring { 0.0 } else { most };
             held.is_due = to < robots && (held.is_in_use() || held.is_open);
+            let is_renewed = std::mem::take(&mut held.is_renewed);
+            held.waits = to < robots && held.flow > 0.0 && !is_renewed;
         }
+        self.look_for_circle(outputs);
         self.settle_flows(outputs);
     }
 
@@ -337,7 +355,7 @@ impl Robot {
         self.flow_to(node).is_some_and(|held| held.asked != RequestNumber::default())
     }
 
-    fn flow_to(&self, node: NodeId) -> Option<&HeldFlow> {
+    pub(super) fn flow_to(&self, node: NodeId) -> Option<&HeldFlow> {
         place_of(&self.flows, node).ok().map(|at| &self.flows[at])
     }
 
@@ -358,6 +376,12 @@ impl Robot {
     /// The robots that may send to this one.
     pub(super) fn senders(&self) -> impl Iterator<Item = NodeId> {
         self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0).map(|kept| kept.from)
+    }
+
+    /// What this node may send to this one.
+    pub(super) fn granted_to(&self, node: NodeId) -> Option<f64> {
+        let at = self.reservations.binary_search_by_key(&node, |kept| kept.from).ok()?;
+        Some(self.reservations[at].lease.flow())
     }
 
     fn ask(&mut self, at: usize, outputs: &mut NodeOutputs) {
@@ -399,6 +423,7 @@ impl Robot {
             // It may have ended on its way, and what it renews as well.
             kept.pass(self.period);
             held.lease.pass(self.period);
+            held.is_renewed |= kept.until() > held.lease.until();
             held.lease.hear(kept);
             self.has_flow_news = true;
         }
@@ -424,7 +449,7 @@ impl Robot {
                 }
             }
         }
-        if self.reservations.iter().any(Reservation::is_unmet) {
+        if self.circle.is_found() || self.reservations.iter().any(Reservation::is_unmet) {
             self.grant_flows(outputs);
         }
     }
@@ -467,23 +492,27 @@ impl Robot {
             self.reservations.iter().map(|kept| (kept.wanted - kept.lease.flow()).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.last_to_grant());
-        let longer = self.parts_last_until(until);
+        let (longer, circle) = (self.parts_last_until(until), self.circle);
         let mut spare = Spare::of(self.lasting_outflow(until) - needed);
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
-            let (before, lease) = (kept.lease.flow(), &mut kept.lease);
-            let part =
-                longer.map(|longer| (part_for_longer(lease, kept.from, &self.flows), longer));
+            let (told, before, lease) = (kept.lease, kept.lease.flow(), &mut kept.lease);
+            let part = longer
+                .map(|longer| (part_for_longer(lease, kept.from, &self.flows, circle), longer));
             let flow = spare.most(before, kept.wanted);
             let can_grant = flow > before + SAME_FLOW && may_grant && lease.promise(flow, until);
             if can_grant {
                 spare.grant(before, flow);
             }
-            if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
+            let is_asked = can_grant || !std::mem::replace(&mut kept.is_answered, true);
+            if is_asked || circle.is_found() {
                 lease.promise(before, until);
                 if let Some((flow, longer)) = part {
                     lease.promise(flow, longer);
                 }
+            }
+            // On a circle, all of its robots hear in the same period what is granted for longer.
+            if is_asked || *lease != told {
                 let grant = FlowGrant::of(kept.asked, lease);
                 outputs.send(kept.from, Message::GrantFlow(grant));
             }
@@ -498,12 +527,13 @@ impl Robot {
     /// Until when its flows carry [parts](part_for_longer) of what it has granted, where that is longer than until the
     /// period up to which they carry all of it.
     fn parts_last_until(&self, until: u32) -> Option<u32> {
-        if !self.senders().any(|sender| self.sends_to(sender)) {
+        let circle = self.circle;
+        if !circle.is_found() && !self.senders().any(|sender| self.sends_to(sender)) {
             return None;
         }
         let part = |kept: &Reservation, period| match kept.lease {
             lease if period <= lease.until() => lease.flow(),
-            lease => part_for_longer(&lease, kept.from, &self.flows),
+            lease => part_for_longer(&lease, kept.from, &self.flows, circle),
         };
         let is_carried = |period: u32| {
             let parts = self.reservations.iter().map(|kept| part(kept, period)).sum::<f64>();

@@ -192,6 +192,7 @@ impl Robot {
                 self.hear_roll(roll);
                 self.hear_beacon(*period, *confirmed, beacon);
             }
+            Message::Probe(probe) => self.hear_probe(from, probe, outputs),
             _ if self.is_planning_routes() => self.hear_of_routes(from, message, outputs),
             _ => self.hear_of_flows_or_moves(from, message),
         }
