@@ -171,7 +171,7 @@ fn messages() -> Vec<Message> {
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
         Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12, part: None }),
         Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12, part: Some(part) }),
-        Message::Probe(Probe { flow: 0.05, robots: vec![2, 4] }),
+        Message::Probe(Probe { number: 3, flow: 0.05, robots: vec![2, 4] }),
         Message::Proposal { period: 5, segment, witness: Some(2) },
         Message::Objection { period: 5 },
         Message::Consent { period: 5 },
@@ -233,7 +233,7 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
         texts.insert(text);
     }
     assert_eq!(texts.len(), messages().len(), "unlike messages are written unlike");
-    assert_eq!(kinds.len(), 12);
+    assert_eq!(kinds.len(), 13);
     let named: BTreeSet<_> = duties().iter().map(|duty| duty.location()).collect();
     assert_eq!(named.len(), Activity::ALL.len());
     assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 8);
@@ -354,8 +354,8 @@ fn messages_that_no_node_can_have_sent_are_impossible() {
         told(7, 7, Some(10)),
         Message::Objection { period: u32::MAX },
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.1 }),
-        Message::Probe(Probe { flow: 0.1, robots: vec![nobody] }),
-        Message::Probe(Probe { flow: 0.1, robots: vec![0; nobody] }),
+        Message::Probe(Probe { number: 1, flow: 0.1, robots: vec![nobody] }),
+        Message::Probe(Probe { number: 1, flow: 0.1, robots: vec![0; nobody + 1] }),
         Message::News(Bulletin::first(Shared::new(Notice::Serviced { task: usize::MAX }))),
         Message::News(Bulletin::first(Shared::new(Notice::Call {
             caller: nobody,

@@ -314,7 +314,7 @@ impl Robot {
             residual: _,
             reservations: _,
             last_request: _,
-            circle: _,
+            circles: _,
             has_flow_news: _,
             has_swept: _,
             demands_passed_on: _,

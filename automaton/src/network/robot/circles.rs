@@ -1,91 +1,148 @@
-//! Flows in circles: a robot finds out that its leases wait for each other.
+//! Flows in circles: robots find out that their leases wait for each other.
 //!
 //! A grant lasts no longer than the flows of the receiver that carry it (`reservation`). In a circle of robots that send
-//! to each other, each lease therefore waits for the next one to be renewed, and all of them end at once. Such a wait is
-//! found by the edge chasing of Chandy, Misra and Haas (1983,
-//! [doi:10.1145/357360.357365](https://doi.org/10.1145/357360.357365)): a robot one of whose leases has not been renewed
-//! sends a [`Probe`] along that flow, and whoever hears it passes it on along a lease of its own that has not been renewed
-//! either. A probe that returns to the robot that has sent it has gone round a circle. The least flow on its way is what
-//! flows in the circle and gets nowhere: without it, each of these robots would send and be sent as much less.
+//! to each other, each lease therefore waits for the next one to be renewed, and all of them end at once, with all that
+//! flows there. Such a wait is found by the edge chasing of Chandy, Misra and Haas (1983,
+//! [doi:10.1145/357360.357365](https://doi.org/10.1145/357360.357365)). A robot one of whose leases is about to end sends
+//! a [`Probe`] along that flow, and a robot that hears it passes it on along such a flow of its own. A probe that returns
+//! to its sender has gone round a circle. The least flow on its way is what goes round and reaches no access point: each
+//! robot of the circle sets as much aside of what it sends and of what it is sent there, as its own probe tells it. Probes
+//! that follow are about what is left, so that circles with a link in common are found one after another, none for more
+//! than there is.
 //!
-//! So the sender from which its own probe returns is granted the rest of its flow for longer, by
-//! [`part_for_longer`](super::reservation). What flows in the circle ends with its leases, at all of its robots in the same
-//! control period. Whatever a probe says, no more is granted for longer than what flows last that long.
+//! What is not set aside is granted for longer ([`part_for_longer`](super::reservation)). What is set aside ends with the
+//! leases of the circle, at all of its robots in the same control period. Whatever probes say, no more is granted for
+//! longer than what flows last that long.
 
 use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
 
 use super::Robot;
-use super::reservation::HeldFlow;
+use super::reservation::{HeldFlow, SAME_FLOW};
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 
-/// A message that follows flows whose leases have not been renewed.
+/// A message that follows flows whose leases wait to be renewed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
-    /// The least of the flows that it has followed.
+    /// Which probe of its sender it is; later ones have greater numbers.
+    pub number: u32,
+    /// The least of the flows that it has followed, as far as they wait and have not been set aside.
     pub flow: f64,
-    /// The robots that have passed it on, the one that looks for a circle first.
+    /// The robots that have passed it on, the one that has sent it first.
     pub robots: Vec<NodeId>,
 }
 
-/// What a robot knows in a control period of the circles of flows that it is part of.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Circle {
-    /// The receiver along whose flow it sends and passes on probes: it has not renewed its lease.
-    next: Option<NodeId>,
-    /// The sender from which the robot's own probe has returned, and the flow that goes round in the circle.
-    found: Option<(NodeId, f64)>,
+/// What a robot has found out in a control period about circles of flows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Circles {
+    /// The number of its newest probe.
+    number: u32,
+    /// The receiver along whose flow this has gone, until it returns.
+    sent_to: Option<NodeId>,
+    found: Vec<Circle>,
 }
 
-impl Circle {
-    /// Whether the robot is on a circle.
-    pub(super) const fn is_found(self) -> bool {
-        self.found.is_some()
+/// A circle of flows that a robot is part of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Circle {
+    /// The robot that sends to this one.
+    from: NodeId,
+    /// The robot that this one sends to.
+    to: NodeId,
+    /// What goes round.
+    flow: f64,
+}
+
+impl Circles {
+    /// Whether the robot is part of one.
+    pub(super) const fn are_found(&self) -> bool {
+        !self.found.is_empty()
     }
 
-    /// What flows in the circle of all that this robot sends.
-    pub(super) fn flow_from(self, sender: NodeId) -> f64 {
-        self.found.filter(|&(from, _)| from == sender).map_or(0.0, |(_, flow)| flow)
+    /// What has been set aside of all that this node sends here.
+    pub(super) fn set_aside_from(&self, sender: NodeId) -> f64 {
+        self.found.iter().filter(|it| it.from == sender).map(|it| it.flow).sum()
+    }
+
+    /// What has been set aside of all that the robot sends to this node.
+    fn set_aside_to(&self, receiver: NodeId) -> f64 {
+        self.found.iter().filter(|it| it.to == receiver).map(|it| it.flow).sum()
+    }
+
+    /// So much goes round a circle, beside what has been found before.
+    pub(super) fn find(&mut self, from: NodeId, to: NodeId, flow: f64) {
+        self.found.push(Circle { from, to, flow });
+    }
+
+    /// A control period begins.
+    pub(super) fn forget(&mut self) {
+        self.sent_to = None;
+        self.found.clear();
     }
 }
 
 impl Robot {
-    /// Sends a probe along a flow whose lease has not been renewed since the last control period: a different one in each,
-    /// where there are several. A robot to which nobody sends is on no circle, and only passes on none.
-    pub(super) fn look_for_circle(&mut self, outputs: &mut NodeOutputs) {
-        let waiting = || self.flows.iter().filter(|held| held.waits());
-        let next = match waiting().count() {
-            0 => None,
-            count => waiting().nth(self.period as usize % count).map(HeldFlow::probe_onward),
+    /// Sends a probe along a flow whose lease waits. A robot to which nobody sends is part of no circle.
+    pub(super) fn look_for_circles(&mut self, outputs: &mut NodeOutputs) {
+        let Some((to, flow)) = self.next_to_follow() else { return };
+        if self.senders().next().is_some() {
+            self.circles.number = self.circles.number.wrapping_add(1);
+            self.circles.sent_to = Some(to);
+            let number = self.circles.number;
+            outputs.send(to, Message::Probe(Probe { number, flow, robots: vec![self.id] }));
+        }
+    }
+
+    /// Whether leases wait that are not known to be part of a circle.
+    pub(super) fn awaits_leases(&self) -> bool {
+        self.waiting_flows().next().is_some()
+    }
+
+    /// The receivers of flows whose leases wait, each with as much as waits and has not been set aside.
+    fn waiting_flows(&self) -> impl Iterator<Item = (NodeId, f64)> {
+        let soon = self.soon();
+        let waiting = move |held: &HeldFlow| {
+            let flow = held.flow - held.lasting(soon);
+            let left = if flow > 0.0 { flow - self.circles.set_aside_to(held.to()) } else { flow };
+            (left > SAME_FLOW).then_some((held.to(), left))
         };
-        self.circle = Circle { next: next.map(|(to, _)| to), found: None };
-        if let Some((to, flow)) = next
-            && self.senders().next().is_some()
-        {
-            outputs.send(to, Message::Probe(Probe { flow, robots: vec![self.id] }));
-        }
+        self.flows.iter().filter_map(waiting)
     }
 
-    /// Notes a circle where this is its own probe, and passes on that of another robot, unless it has done so before.
+    /// The flow that probes follow from here: where several leases wait, another one each time. Which one is as good as
+    /// drawn by lot, so that every choice of all robots comes up in time.
+    fn next_to_follow(&self) -> Option<(NodeId, f64)> {
+        let count = self.waiting_flows().count();
+        let time = u64::from(self.period) << 8 | self.round_count.times_asked_again() as u64;
+        let lot = (time ^ (self.id as u64) << 40).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+        self.waiting_flows().nth((lot as usize).checked_rem(count)?)
+    }
+
+    /// Sets aside what goes round a circle where this is the robot's own probe, and passes on that of another robot, unless
+    /// it has done so before.
     pub(super) fn hear_probe(&mut self, from: NodeId, probe: &Probe, outputs: &mut NodeOutputs) {
-        let Some(granted) = self.granted_to(from) else { return };
-        let flow = probe.flow.min(granted);
         match probe.robots.iter().position(|&robot| robot == self.id) {
-            Some(0) => {
-                self.circle.found = Some((from, flow));
-                self.has_flow_news = true;
-            }
+            Some(0) => self.close_circle(from, probe),
             Some(_) => {}
-            None => self.pass_on(flow, &probe.robots, outputs),
+            None => self.pass_on(probe, outputs),
         }
     }
 
-    fn pass_on(&self, flow: f64, robots: &[NodeId], outputs: &mut NodeOutputs) {
-        let Some(held) = self.circle.next.and_then(|to| self.flow_to(to)) else { return };
-        let (to, own) = held.probe_onward();
-        let robots = robots.iter().copied().chain([self.id]).collect();
-        outputs.send(to, Message::Probe(Probe { flow: flow.min(own), robots }));
+    fn close_circle(&mut self, from: NodeId, probe: &Probe) {
+        if probe.number == self.circles.number
+            && let Some(to) = self.circles.sent_to.take()
+        {
+            self.circles.find(from, to, probe.flow);
+            self.has_flow_news = true;
+        }
+    }
+
+    fn pass_on(&self, probe: &Probe, outputs: &mut NodeOutputs) {
+        let Some((to, left)) = self.next_to_follow() else { return };
+        let robots = probe.robots.iter().copied().chain([self.id]).collect();
+        let flow = probe.flow.min(left);
+        outputs.send(to, Message::Probe(Probe { flow, robots, ..*probe }));
     }
 }

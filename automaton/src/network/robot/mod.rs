@@ -94,7 +94,7 @@ use super::shared::Shared;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use bodies::Bodies;
-use circles::Circle;
+use circles::Circles;
 use duties::Label;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
@@ -195,7 +195,7 @@ pub struct Robot {
     flows: Vec<HeldFlow>,
     reservations: Vec<Reservation>,
     last_request: RequestNumber,
-    circle: Circle,
+    circles: Circles,
 
     // Where robots were that it does not hear any more or has only heard of, those that do not take part,
     // and those that are attached to it.
@@ -398,7 +398,7 @@ impl Robot {
             residual: 0.0,
             reservations: Vec::new(),
             last_request: RequestNumber::default(),
-            circle: Circle::default(),
+            circles: Circles::default(),
             has_flow_news: false,
             has_swept: false,
             demands_passed_on: 0,

@@ -33,7 +33,7 @@ use pleach_discrete::network::reservation::{Lease, Spare};
 use serde::{Deserialize, Serialize};
 
 use super::Robot;
-use super::circles::Circle;
+use super::circles::Circles;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
@@ -44,11 +44,13 @@ mod lemma;
 /// Control periods for which a grant holds at the least as long as no message is lost. Every flow is asked for
 /// again in each of them.
 const LEASE: u32 = 8;
+/// What ends within so many control periods waits to be renewed.
+const ABOUT_TO_END: u32 = LEASE / 2;
 /// How many leases long packets flow to an access point that is not heard. It promises nothing to anyone, so
 /// that nothing ends but its service.
 const PATIENCE_WITH_ACCESS_POINTS: u32 = 2;
 /// Flows that differ by less are the same.
-const SAME_FLOW: f64 = 1e-12;
+pub(super) const SAME_FLOW: f64 = 1e-12;
 /// Passes in which some flows are raised and others lowered to make room for them.
 const PASSES: usize = 4;
 
@@ -119,10 +121,6 @@ pub(super) struct HeldFlow {
     is_open: bool,
     /// Whether a request is to be made.
     is_due: bool,
-    /// Whether all of it has been granted for longer since the last control period began.
-    is_renewed: bool,
-    /// Whether packets flow to a robot that has not granted all of it for longer in the last control period.
-    waits: bool,
 }
 
 /// What a receiver keeps for a sender.
@@ -167,11 +165,16 @@ impl Reservation {
     fn is_unmet(&self) -> bool {
         !self.is_answered || self.wanted > self.lease.flow() + SAME_FLOW
     }
+
+    /// Whether some of it has ended when a control period ahead begins.
+    fn ends_before(&self, period: u32) -> bool {
+        self.lease.lasting(period) < self.lease.flow()
+    }
 }
 
 impl HeldFlow {
     /// None yet, to this node.
-    fn to(to: NodeId) -> Self {
+    fn new(to: NodeId) -> Self {
         HeldFlow { to, ..HeldFlow::default() }
     }
 
@@ -185,14 +188,9 @@ impl HeldFlow {
         self.flow > 0.0 || self.wanted > 0.0
     }
 
-    /// Whether its lease waits to be renewed.
-    pub const fn waits(&self) -> bool {
-        self.waits
-    }
-
-    /// Its receiver, and the flow that a probe goes along.
-    pub const fn probe_onward(&self) -> (NodeId, f64) {
-        (self.to, self.flow)
+    /// The receiver.
+    pub const fn to(&self) -> NodeId {
+        self.to
     }
 
     /// Whether the flow is to be raised or lowered.
@@ -206,7 +204,7 @@ impl HeldFlow {
     }
 
     /// What will be left of it in a control period ahead if no grant is renewed.
-    fn lasting(&self, period: u32) -> f64 {
+    pub fn lasting(&self, period: u32) -> f64 {
         self.flow.min(self.lease.lasting(period))
     }
 
@@ -278,10 +276,10 @@ fn ends(lease: &Lease<f64>) -> [u32; 2] {
 
 /// The part of a grant that does not depend on what is sent back to the robot that it is given to, at once or by way of
 /// others; no less than has been promised already for longer than all of it.
-fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow], circle: Circle) -> f64 {
+fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow], circles: &Circles) -> f64 {
     let sent_back = place_of(flows, from).map_or(0.0, |at| flows[at].flow);
     let promised = lease.part().map_or(0.0, |(part, _)| part);
-    (lease.flow() - sent_back.max(circle.flow_from(from))).max(promised)
+    (lease.flow() - sent_back.max(circles.set_aside_from(from))).max(promised)
 }
 
 impl Robot {
@@ -313,10 +311,8 @@ impl Robot {
             let most = if can_raise { planned } else { planned.min(held.flow) };
             held.wanted = if is_retiring { 0.0 } else { most };
             held.is_due = to < robots && (held.is_in_use() || held.is_open);
-            let is_renewed = std::mem::take(&mut held.is_renewed);
-            held.waits = to < robots && held.flow > 0.0 && !is_renewed;
         }
-        self.look_for_circle(outputs);
+        self.circles.forget();
         self.settle_flows(outputs);
     }
 
@@ -334,6 +330,7 @@ impl Robot {
         let is_late = self.round_count.is_for_asking_again();
         if is_late {
             self.flows.iter_mut().for_each(|held| held.is_due = held.is_open);
+            self.look_for_circles(outputs);
         }
         if is_late || self.has_flow_news {
             self.settle_flows(outputs);
@@ -355,14 +352,14 @@ impl Robot {
         self.flow_to(node).is_some_and(|held| held.asked != RequestNumber::default())
     }
 
-    pub(super) fn flow_to(&self, node: NodeId) -> Option<&HeldFlow> {
+    fn flow_to(&self, node: NodeId) -> Option<&HeldFlow> {
         place_of(&self.flows, node).ok().map(|at| &self.flows[at])
     }
 
     /// The flow to a node to which there is a link.
     pub(super) fn held_flow(&mut self, node: NodeId) -> &mut HeldFlow {
         let at = place_of(&self.flows, node).unwrap_or_else(|at| {
-            self.flows.insert(at, HeldFlow::to(node));
+            self.flows.insert(at, HeldFlow::new(node));
             at
         });
         &mut self.flows[at]
@@ -376,12 +373,6 @@ impl Robot {
     /// The robots that may send to this one.
     pub(super) fn senders(&self) -> impl Iterator<Item = NodeId> {
         self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0).map(|kept| kept.from)
-    }
-
-    /// What this node may send to this one.
-    pub(super) fn granted_to(&self, node: NodeId) -> Option<f64> {
-        let at = self.reservations.binary_search_by_key(&node, |kept| kept.from).ok()?;
-        Some(self.reservations[at].lease.flow())
     }
 
     fn ask(&mut self, at: usize, outputs: &mut NodeOutputs) {
@@ -423,7 +414,6 @@ impl Robot {
             // It may have ended on its way, and what it renews as well.
             kept.pass(self.period);
             held.lease.pass(self.period);
-            held.is_renewed |= kept.until() > held.lease.until();
             held.lease.hear(kept);
             self.has_flow_news = true;
         }
@@ -449,7 +439,8 @@ impl Robot {
                 }
             }
         }
-        if self.circle.is_found() || self.reservations.iter().any(Reservation::is_unmet) {
+        let soon = self.soon();
+        if self.reservations.iter().any(|kept| kept.is_unmet() || kept.ends_before(soon)) {
             self.grant_flows(outputs);
         }
     }
@@ -485,38 +476,45 @@ impl Robot {
     }
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
-    /// granted for as long as these last; [a part](part_for_longer) for longer where it sends some of it back.
+    /// granted for as long as these last; [a part](part_for_longer) for longer where some of it comes back. What is about to
+    /// end is renewed whenever it can be, so that all leases that wait for each other are in the same control period.
     fn grant_flows(&mut self, outputs: &mut NodeOutputs) {
         let needed = self.needed_outflow();
         let wanted =
             self.reservations.iter().map(|kept| (kept.wanted - kept.lease.flow()).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.last_to_grant());
-        let (longer, circle) = (self.parts_last_until(until), self.circle);
+        let longer = self.parts_last_until(until);
+        let (soon, circles) = (self.soon(), &self.circles);
         let mut spare = Spare::of(self.lasting_outflow(until) - needed);
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
-            let (told, before, lease) = (kept.lease, kept.lease.flow(), &mut kept.lease);
+            let (told, is_ending) = (kept.lease, kept.ends_before(soon));
+            let (before, lease) = (told.flow(), &mut kept.lease);
             let part = longer
-                .map(|longer| (part_for_longer(lease, kept.from, &self.flows, circle), longer));
+                .map(|longer| (part_for_longer(lease, kept.from, &self.flows, circles), longer));
             let flow = spare.most(before, kept.wanted);
             let can_grant = flow > before + SAME_FLOW && may_grant && lease.promise(flow, until);
             if can_grant {
                 spare.grant(before, flow);
             }
             let is_asked = can_grant || !std::mem::replace(&mut kept.is_answered, true);
-            if is_asked || circle.is_found() {
+            if is_asked || is_ending {
                 lease.promise(before, until);
                 if let Some((flow, longer)) = part {
                     lease.promise(flow, longer);
                 }
             }
-            // On a circle, all of its robots hear in the same period what is granted for longer.
             if is_asked || *lease != told {
                 let grant = FlowGrant::of(kept.asked, lease);
                 outputs.send(kept.from, Message::GrantFlow(grant));
             }
         }
+    }
+
+    /// The control period in which what is about to end has ended.
+    pub(super) fn soon(&self) -> u32 {
+        self.period.saturating_add(ABOUT_TO_END)
     }
 
     /// The last control period for which it may grant something now.
@@ -527,13 +525,13 @@ impl Robot {
     /// Until when its flows carry [parts](part_for_longer) of what it has granted, where that is longer than until the
     /// period up to which they carry all of it.
     fn parts_last_until(&self, until: u32) -> Option<u32> {
-        let circle = self.circle;
-        if !circle.is_found() && !self.senders().any(|sender| self.sends_to(sender)) {
+        let circles = &self.circles;
+        if !circles.are_found() && !self.senders().any(|sender| self.sends_to(sender)) {
             return None;
         }
         let part = |kept: &Reservation, period| match kept.lease {
             lease if period <= lease.until() => lease.flow(),
-            lease => part_for_longer(&lease, kept.from, &self.flows, circle),
+            lease => part_for_longer(&lease, kept.from, &self.flows, circles),
         };
         let is_carried = |period: u32| {
             let parts = self.reservations.iter().map(|kept| part(kept, period)).sum::<f64>();

@@ -86,9 +86,14 @@ impl Rounds {
         self.0 >= Self::LAST_OF_SWEEPS
     }
 
-    /// Whether requests that have not been answered are made again.
+    /// Whether requests that have not been answered are made again, and circles are looked for.
     pub const fn is_for_asking_again(self) -> bool {
         self.0.is_multiple_of(ROUNDS_FOR_AN_ANSWER)
+    }
+
+    /// How often requests that have not been answered have been made again.
+    pub const fn times_asked_again(self) -> usize {
+        self.0 / ROUNDS_FOR_AN_ANSWER
     }
 
     /// Whether more may be granted: its sender hears of it, and can still give back what it has no room
@@ -134,9 +139,9 @@ impl Robot {
         if has_nothing_to_do { last.saturating_sub(self.round_count.count() + 1) } else { 0 }
     }
 
-    /// The round of the reservation in which the robot asks again, or the last one.
+    /// The round of the reservation in which the robot asks or looks for circles again, or the last one.
     fn next_of_reservation(&self) -> usize {
-        if self.requests_are_answered() {
+        if self.requests_are_answered() && !self.awaits_leases() {
             return RESERVATION;
         }
         let asked = self.round_count.count() / ROUNDS_FOR_AN_ANSWER;

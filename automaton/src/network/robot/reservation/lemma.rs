@@ -45,6 +45,8 @@ enum Step {
     SendOn(f64),
     /// The receiver sends a flow back, for this many control periods.
     SendBack(u32),
+    /// A probe of the receiver returns from the sender, having gone round a circle in which this flows.
+    FindCircle(f64),
     SenderSettles,
     ReceiverSettles,
     HearAsk(usize),
@@ -102,6 +104,7 @@ impl Link {
             Step::SendOn(0.1),
             Step::SendOn(0.3),
             Step::SendBack(3),
+            Step::FindCircle(0.1),
             Step::SenderSettles,
             Step::ReceiverSettles,
         ];
@@ -130,6 +133,10 @@ impl Link {
                 let lease = Lease::of(BACK, receiver.period + periods);
                 let held = receiver.held_flow(OTHER);
                 (held.flow, held.lease) = (BACK, lease);
+            }
+            Step::FindCircle(flow) => {
+                receiver.circles.set_aside(OTHER, flow);
+                receiver.has_flow_news = true;
             }
             Step::SenderSettles => sender.take_in_requests(&mut asked),
             Step::ReceiverSettles => receiver.take_in_requests(&mut granted),
@@ -160,8 +167,9 @@ impl Link {
         };
         let (sender, receiver) = (&self.sender, &self.receiver);
         let state = (sender.period, sender.last_request, sender.has_flow_news);
-        let other = (&receiver.reservations, receiver.has_flow_news, &self.asks, &self.grants);
-        format!("{state:?} {other:?} {} {}", flows(sender), flows(receiver))
+        let other = (&receiver.reservations, &receiver.circles, &self.asks, &self.grants);
+        let has_news = receiver.has_flow_news;
+        format!("{state:?} {has_news} {other:?} {} {}", flows(sender), flows(receiver))
     }
 }
 
@@ -248,7 +256,7 @@ fn is_step(link: &Link, step: Step, next: &Link) -> bool {
         Step::SendOn(_) | Step::ReceiverSettles => {
             before.receiver_steps(&after, granted) && rests.0
         }
-        Step::SendBack(_) => rests == (true, true),
+        Step::SendBack(_) | Step::FindCircle(_) => rests == (true, true),
         Step::HearAsk(at) => {
             let ask = link.asks[at];
             let is_known = link.receiver.reservations.iter().any(|kept| kept.from == OTHER);

@@ -2,6 +2,7 @@
 
 mod attachment;
 mod bodies;
+mod circles;
 mod eager;
 mod elections;
 mod errands;
