@@ -10,7 +10,7 @@
 //! that follow are about what is left, so that circles with a link in common are found one after another, none for more
 //! than there is.
 //!
-//! What is not set aside is granted for longer ([`part_for_longer`](super::reservation)). What is set aside ends with the
+//! What is not set aside is granted for longer (by `reservation`). What is set aside ends with the
 //! leases of the circle, at all of its robots in the same control period. Whatever probes say, no more is granted for
 //! longer than what flows last that long.
 

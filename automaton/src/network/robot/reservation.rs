@@ -166,6 +166,11 @@ impl Reservation {
         !self.is_answered || self.wanted > self.lease.flow() + SAME_FLOW
     }
 
+    /// What is left of it when what flows in circles has ended.
+    fn part_besides(&self, circles: &Circles) -> f64 {
+        (self.lease.flow() - circles.set_aside_from(self.from)).max(0.0)
+    }
+
     /// Whether some of it has ended when a control period ahead begins.
     fn ends_before(&self, period: u32) -> bool {
         self.lease.lasting(period) < self.lease.flow()
@@ -272,14 +277,6 @@ fn place_of(flows: &[HeldFlow], node: NodeId) -> Result<usize, usize> {
 /// The control periods after which less of a lease holds.
 fn ends(lease: &Lease<f64>) -> [u32; 2] {
     [lease.until(), lease.end()]
-}
-
-/// The part of a grant that does not depend on what is sent back to the robot that it is given to, at once or by way of
-/// others; no less than has been promised already for longer than all of it.
-fn part_for_longer(lease: &Lease<f64>, from: NodeId, flows: &[HeldFlow], circles: &Circles) -> f64 {
-    let sent_back = place_of(flows, from).map_or(0.0, |at| flows[at].flow);
-    let promised = lease.part().map_or(0.0, |(part, _)| part);
-    (lease.flow() - sent_back.max(circles.set_aside_from(from))).max(promised)
 }
 
 impl Robot {
@@ -476,7 +473,7 @@ impl Robot {
     }
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
-    /// granted for as long as these last; [a part](part_for_longer) for longer where some of it comes back. What is about to
+    /// granted for as long as these last; [a part](Reservation::part_besides) for longer where some of it comes back. What is about to
     /// end is renewed whenever it can be, so that all leases that wait for each other are in the same control period.
     fn grant_flows(&mut self, outputs: &mut NodeOutputs) {
         let needed = self.needed_outflow();
@@ -490,9 +487,8 @@ impl Robot {
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
             let (told, is_ending) = (kept.lease, kept.ends_before(soon));
+            let part = longer.map(|longer| (kept.part_besides(circles), longer));
             let (before, lease) = (told.flow(), &mut kept.lease);
-            let part = longer
-                .map(|longer| (part_for_longer(lease, kept.from, &self.flows, circles), longer));
             let flow = spare.most(before, kept.wanted);
             let can_grant = flow > before + SAME_FLOW && may_grant && lease.promise(flow, until);
             if can_grant {
@@ -522,17 +518,16 @@ impl Robot {
         self.period.saturating_add(self.lease())
     }
 
-    /// Until when its flows carry [parts](part_for_longer) of what it has granted, where that is longer than until the
+    /// Until when its flows carry [parts](Reservation::part_besides) of what it has granted, where that is longer than until the
     /// period up to which they carry all of it.
     fn parts_last_until(&self, until: u32) -> Option<u32> {
         let circles = &self.circles;
-        if !circles.are_found() && !self.senders().any(|sender| self.sends_to(sender)) {
+        if !circles.are_found() {
             return None;
         }
-        let part = |kept: &Reservation, period| match kept.lease {
-            lease if period <= lease.until() => lease.flow(),
-            lease => part_for_longer(&lease, kept.from, &self.flows, circles),
-        };
+        // What has been promised already holds in any case.
+        let part =
+            |kept: &Reservation, period| kept.part_besides(circles).max(kept.lease.lasting(period));
         let is_carried = |period: u32| {
             let parts = self.reservations.iter().map(|kept| part(kept, period)).sum::<f64>();
             self.lasting_outflow(period) >= self.rate + parts - SAME_FLOW
