@@ -39,8 +39,10 @@ pub struct Probe {
 pub(super) struct Circles {
     /// The number of its newest probe.
     number: u32,
-    /// The receiver along whose flow this has gone, until it returns.
-    sent_to: Option<NodeId>,
+    /// Whether this has not returned.
+    is_out: bool,
+    /// The receiver of the flow that probes follow from here for now, and as much of it as waits.
+    next: Option<(NodeId, f64)>,
     found: Vec<Circle>,
 }
 
@@ -78,19 +80,20 @@ impl Circles {
 
     /// A control period begins.
     pub(super) fn forget(&mut self) {
-        self.sent_to = None;
+        (self.is_out, self.next) = (false, None);
         self.found.clear();
     }
 }
 
 impl Robot {
-    /// Sends a probe along a flow whose lease waits. A robot to which nobody sends is part of no circle.
+    /// Chooses the flow that probes follow, and sends one along it. A robot to which nobody sends is part of no circle.
     pub(super) fn look_for_circles(&mut self, outputs: &mut NodeOutputs) {
-        let Some((to, flow)) = self.next_to_follow() else { return };
-        if self.senders().next().is_some() {
-            self.circles.number = self.circles.number.wrapping_add(1);
-            self.circles.sent_to = Some(to);
-            let number = self.circles.number;
+        self.circles.next = self.draw_waiting_flow();
+        if let Some((to, flow)) = self.circles.next
+            && self.senders().next().is_some()
+        {
+            let number = self.circles.number.wrapping_add(1);
+            (self.circles.number, self.circles.is_out) = (number, true);
             outputs.send(to, Message::Probe(Probe { number, flow, robots: vec![self.id] }));
         }
     }
@@ -111,9 +114,9 @@ impl Robot {
         self.flows.iter().filter_map(waiting)
     }
 
-    /// The flow that probes follow from here: where several leases wait, another one each time. Which one is as good as
-    /// drawn by lot, so that every choice of all robots comes up in time.
-    fn next_to_follow(&self) -> Option<(NodeId, f64)> {
+    /// Where several leases wait, another one each time: as good as drawn by lot, so that every choice of all robots comes up
+    /// in time.
+    fn draw_waiting_flow(&self) -> Option<(NodeId, f64)> {
         let count = self.waiting_flows().count();
         let time = u64::from(self.period) << 8 | self.round_count.times_asked_again() as u64;
         let lot = (time ^ (self.id as u64) << 40).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
@@ -131,8 +134,10 @@ impl Robot {
     }
 
     fn close_circle(&mut self, from: NodeId, probe: &Probe) {
-        if probe.number == self.circles.number
-            && let Some(to) = self.circles.sent_to.take()
+        let Circles { number, is_out, next, .. } = &mut self.circles;
+        if probe.number == *number
+            && std::mem::take(is_out)
+            && let Some((to, _)) = *next
         {
             self.circles.find(from, to, probe.flow);
             self.has_flow_news = true;
@@ -140,7 +145,7 @@ impl Robot {
     }
 
     fn pass_on(&self, probe: &Probe, outputs: &mut NodeOutputs) {
-        let Some((to, left)) = self.next_to_follow() else { return };
+        let Some((to, left)) = self.circles.next else { return };
         let robots = probe.robots.iter().copied().chain([self.id]).collect();
         let flow = probe.flow.min(left);
         outputs.send(to, Message::Probe(Probe { flow, robots, ..*probe }));

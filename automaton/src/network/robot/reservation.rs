@@ -327,10 +327,12 @@ impl Robot {
         let is_late = self.round_count.is_for_asking_again();
         if is_late {
             self.flows.iter_mut().for_each(|held| held.is_due = held.is_open);
-            self.look_for_circles(outputs);
         }
         if is_late || self.has_flow_news {
             self.settle_flows(outputs);
+        }
+        if is_late {
+            self.look_for_circles(outputs);
         }
     }
 
