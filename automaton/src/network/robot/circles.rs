@@ -105,9 +105,9 @@ impl Robot {
 
     /// The receivers of flows whose leases wait, each with as much as waits and has not been set aside.
     fn waiting_flows(&self) -> impl Iterator<Item = (NodeId, f64)> {
-        let soon = self.soon();
+        let period = self.period;
         let waiting = move |held: &HeldFlow| {
-            let flow = held.flow - held.lasting(soon);
+            let flow = held.waiting(period);
             let left = if flow > 0.0 { flow - self.circles.set_aside_to(held.to()) } else { flow };
             (left > SAME_FLOW).then_some((held.to(), left))
         };

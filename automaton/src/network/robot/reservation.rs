@@ -45,7 +45,7 @@ mod lemma;
 /// again in each of them.
 const LEASE: u32 = 8;
 /// What ends within so many control periods waits to be renewed.
-const ABOUT_TO_END: u32 = LEASE / 2;
+const ABOUT_TO_END: u32 = LEASE - 2;
 /// How many leases long packets flow to an access point that is not heard. It promises nothing to anyone, so
 /// that nothing ends but its service.
 const PATIENCE_WITH_ACCESS_POINTS: u32 = 2;
@@ -171,9 +171,10 @@ impl Reservation {
         (self.lease.flow() - circles.set_aside_from(self.from)).max(0.0)
     }
 
-    /// Whether some of it has ended when a control period ahead begins.
-    fn ends_before(&self, period: u32) -> bool {
-        self.lease.lasting(period) < self.lease.flow()
+    /// Whether its sender has asked for it in this control period, and some of it is about to end.
+    fn waits(&self, period: u32) -> bool {
+        self.asked.period == period
+            && self.lease.lasting(period.saturating_add(ABOUT_TO_END)) < self.lease.flow()
     }
 }
 
@@ -208,8 +209,13 @@ impl HeldFlow {
         self.wanted.min(self.lease.flow())
     }
 
+    /// What of it is about to end, and waits to be renewed.
+    pub fn waiting(&self, period: u32) -> f64 {
+        self.flow - self.lasting(period.saturating_add(ABOUT_TO_END))
+    }
+
     /// What will be left of it in a control period ahead if no grant is renewed.
-    pub fn lasting(&self, period: u32) -> f64 {
+    fn lasting(&self, period: u32) -> f64 {
         self.flow.min(self.lease.lasting(period))
     }
 
@@ -438,8 +444,8 @@ impl Robot {
                 }
             }
         }
-        let soon = self.soon();
-        if self.reservations.iter().any(|kept| kept.is_unmet() || kept.ends_before(soon)) {
+        let period = self.period;
+        if self.reservations.iter().any(|kept| kept.is_unmet() || kept.waits(period)) {
             self.grant_flows(outputs);
         }
     }
@@ -484,11 +490,11 @@ impl Robot {
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.last_to_grant());
         let longer = self.parts_last_until(until);
-        let (soon, circles) = (self.soon(), &self.circles);
+        let (period, circles) = (self.period, &self.circles);
         let mut spare = Spare::of(self.lasting_outflow(until) - needed);
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
-            let (told, is_ending) = (kept.lease, kept.ends_before(soon));
+            let (told, waits) = (kept.lease, kept.waits(period));
             let part = longer.map(|longer| (kept.part_besides(circles), longer));
             let (before, lease) = (told.flow(), &mut kept.lease);
             let flow = spare.most(before, kept.wanted);
@@ -497,7 +503,7 @@ impl Robot {
                 spare.grant(before, flow);
             }
             let is_asked = can_grant || !std::mem::replace(&mut kept.is_answered, true);
-            if is_asked || is_ending {
+            if is_asked || waits {
                 lease.promise(before, until);
                 if let Some((flow, longer)) = part {
                     lease.promise(flow, longer);
@@ -508,11 +514,6 @@ impl Robot {
                 outputs.send(kept.from, Message::GrantFlow(grant));
             }
         }
-    }
-
-    /// The control period in which what is about to end has ended.
-    pub(super) fn soon(&self) -> u32 {
-        self.period.saturating_add(ABOUT_TO_END)
     }
 
     /// The last control period for which it may grant something now.

@@ -135,7 +135,7 @@ impl Link {
                 (held.flow, held.lease) = (BACK, lease);
             }
             Step::FindCircle(flow) => {
-                receiver.circles.set_aside(OTHER, flow);
+                receiver.circles.find(OTHER, OTHER, flow);
                 receiver.has_flow_news = true;
             }
             Step::SenderSettles => sender.take_in_requests(&mut asked),

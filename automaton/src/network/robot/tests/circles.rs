@@ -7,7 +7,7 @@ use super::*;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 use crate::network::robot::Probe;
-use crate::network::robot::reservation::{FlowGrant, FlowRequest, RequestNumber};
+use crate::network::robot::reservation::{FlowRequest, RequestNumber};
 use crate::node::Destination;
 
 /// Robot 5, to which robot 0 sends, and robots 3 and 4, which send to it.
@@ -17,7 +17,7 @@ const OTHER: NodeId = 4;
 /// The control periods until the leases of the circle end.
 const LEFT: u32 = 3;
 
-/// Robot 0 sends 0.3 to the access point and 0.1 to robot 5, whose lease is not renewed. It has granted 0.2 to robot 3
+/// Robot 0 sends 0.3 to the access point and 0.1 to robot 5, whose lease is about to end. It has granted 0.2 to robot 3
 /// and 0.1 to robot 4, and its rate is 0.1: neither can be renewed.
 fn on_a_circle() -> Robot {
     let mut robot = router();
@@ -35,7 +35,22 @@ fn on_a_circle() -> Robot {
         kept.lease = Lease::of(flow, NOW + LEFT);
     }
     robot.ask_for_flows(&mut outputs);
+    robot.round_count.restart();
     robot
+}
+
+/// The robot looks for circles, `rounds` rounds later; what it sends.
+fn looks(robot: &mut Robot, rounds: usize) -> Vec<(Destination, Probe)> {
+    let mut outputs = NodeOutputs::of(0);
+    robot.round_count.pass(rounds);
+    robot.take_in_requests(&mut outputs);
+    probes(&mut outputs)
+}
+
+fn hears(robot: &mut Robot, from: NodeId, heard: &Probe) -> Vec<(Destination, Probe)> {
+    let mut outputs = NodeOutputs::of(0);
+    robot.hear_probe(from, heard, &mut outputs);
+    probes(&mut outputs)
 }
 
 fn probes(outputs: &mut NodeOutputs) -> Vec<(Destination, Probe)> {
@@ -47,73 +62,91 @@ fn probes(outputs: &mut NodeOutputs) -> Vec<(Destination, Probe)> {
     sent.filter_map(probe).collect()
 }
 
-fn probe(flow: f64, robots: &[NodeId]) -> Probe {
-    Probe { number: 1, flow, robots: robots.to_vec() }
+fn probe(number: u32, flow: f64, robots: &[NodeId]) -> Probe {
+    Probe { number, flow, robots: robots.to_vec() }
 }
 
-/// What it sends along with its requests in the next control period, and then on hearing a probe.
-fn sent_next(robot: &mut Robot, from: NodeId, heard: &Probe) -> [Vec<(Destination, Probe)>; 2] {
-    let mut outputs = NodeOutputs::of(0);
-    robot.period += 1;
-    robot.ask_for_flows(&mut outputs);
-    let own = probes(&mut outputs);
-    robot.hear_probe(from, heard, &mut outputs);
-    [own, probes(&mut outputs)]
+fn to_next(probe: Probe) -> Vec<(Destination, Probe)> {
+    vec![(Destination::One(NEXT), probe)]
 }
 
 #[test]
-fn a_probe_follows_a_lease_that_is_not_renewed() {
-    let to_next = |flow, robots: &[NodeId]| vec![(Destination::One(NEXT), probe(flow, robots))];
-    let heard = probe(0.05, &[2, BEFORE]);
+fn probes_follow_a_lease_that_is_about_to_end() {
     let mut robot = on_a_circle();
-    let [own, passed_on] = sent_next(&mut robot, BEFORE, &heard);
-    assert_eq!(own, to_next(0.1, &[0]));
-    assert_eq!(passed_on, to_next(0.05, &[2, BEFORE, 0]));
-    let [_, least] = sent_next(&mut robot, BEFORE, &probe(0.5, &[BEFORE]));
-    assert_eq!(least, to_next(0.1, &[BEFORE, 0]), "less flows on from here");
-
-    // Its way leads into a circle of which its sender is no part.
-    let [_, again] = sent_next(&mut robot, BEFORE, &probe(0.05, &[2, 0, 1, BEFORE]));
-    assert!(again.is_empty() && !robot.circles.are_found());
-    // One that has been granted nothing here sends nothing on.
-    let [_, strange] = sent_next(&mut on_a_circle(), 2, &probe(0.05, &[2]));
-    assert!(strange.is_empty());
+    assert!(looks(&mut robot, 7).is_empty(), "it looks for circles in every eighth round");
+    assert_eq!(looks(&mut robot, 1), to_next(probe(1, 0.1, &[0])));
+    let passed_on = hears(&mut robot, BEFORE, &probe(7, 0.05, &[2, BEFORE]));
+    assert_eq!(passed_on, to_next(probe(7, 0.05, &[2, BEFORE, 0])));
+    let least = hears(&mut robot, BEFORE, &probe(7, 0.5, &[BEFORE]));
+    assert_eq!(least, to_next(probe(7, 0.1, &[BEFORE, 0])), "less flows on from here");
+    let elsewhere = hears(&mut robot, BEFORE, &probe(7, 0.05, &[2, 0, 1, BEFORE]));
+    assert!(elsewhere.is_empty() && !robot.circles.are_found(), "its sender is on no circle");
+    assert_eq!(looks(&mut robot, 8), to_next(probe(2, 0.1, &[0])));
 
     let mut alone = on_a_circle();
     alone.reservations.clear();
-    let [own, _] = sent_next(&mut alone, BEFORE, &heard);
-    assert!(own.is_empty(), "nobody sends to it");
+    assert!(looks(&mut alone, 8).is_empty(), "nobody sends to it");
 }
 
 #[test]
-fn a_lease_that_is_renewed_waits_for_nothing() {
+fn a_lease_that_has_been_renewed_waits_for_nothing() {
     let sent = |until: u32| {
         let mut robot = on_a_circle();
-        let number = robot.flow_to(NEXT).expect("it sends there").asked();
-        robot.hear_grant(NEXT, FlowGrant { number, flow: 0.1, until, part: None });
-        sent_next(&mut robot, BEFORE, &probe(0.05, &[2, BEFORE])).map(|sent| sent.len())
+        robot.held_flow(NEXT).lease = Lease::of(0.1, until);
+        let waits = robot.awaits_leases();
+        assert_eq!(looks(&mut robot, 8).is_empty(), !waits);
+        waits
     };
-    assert_eq!(sent(NOW + LEFT), [1, 1]);
-    assert_eq!(sent(NOW + LEFT + 1), [0, 0]);
+    assert_eq!([NOW + 5, NOW + 6].map(sent), [true, false]);
+    // Of a lease that is about to end for a part of the flow, this part waits.
+    let mut robot = on_a_circle();
+    assert!(robot.held_flow(NEXT).lease.promise(0.07, NOW + 6));
+    let [(_, Probe { flow, .. })] = looks(&mut robot, 8)[..] else { panic!("it sends a probe") };
+    assert!((flow - 0.03).abs() < 1e-12, "{flow}");
 }
 
-/// Where several wait, another one is followed in each control period, so that each circle is found in time.
+/// Where several wait, probes follow now this one and now that one, so that each circle is found in time.
 #[test]
-fn probes_follow_one_lease_after_another() {
+fn probes_follow_one_lease_or_another() {
     let mut robot = on_a_circle();
     robot.hears(beacon(OTHER, east(1.0), fixed(14, 13), &[13, 14]));
     robot.survey_links();
     robot.links.iter_mut().for_each(|link| link.share = 0.1 / link.reliability);
     let held = robot.held_flow(OTHER);
     (held.flow, held.lease) = (0.1, Lease::of(0.1, NOW + LEFT));
-    let heard = probe(0.05, &[2, BEFORE]);
-    let mut followed: Vec<_> = (0..2)
-        .flat_map(|_| sent_next(&mut robot, BEFORE, &heard))
-        .flat_map(|sent| sent.into_iter().map(|(to, _)| to))
-        .collect();
+    robot.ask_for_flows(&mut NodeOutputs::of(0));
+    robot.round_count.restart();
+    let mut followed: Vec<_> =
+        (0..11).flat_map(|_| looks(&mut robot, 8)).map(|(to, _)| to).collect();
     followed.sort_unstable();
-    let [four, five] = [OTHER, NEXT].map(Destination::One);
-    assert_eq!(followed, [four, four, five, five]);
+    followed.dedup();
+    assert_eq!(followed, [OTHER, NEXT].map(Destination::One));
+}
+
+/// What has been found to go round a circle is set aside, once, and further probes are about the rest.
+#[test]
+fn circles_with_a_link_in_common_share_what_flows_there() {
+    let mut robot = on_a_circle();
+    let set_aside = |robot: &Robot| robot.circles.set_aside_from(BEFORE);
+    looks(&mut robot, 8);
+    let returned = probe(1, 0.06, &[0, NEXT, BEFORE]);
+    hears(&mut robot, BEFORE, &probe(0, 0.06, &[0, NEXT, BEFORE]));
+    assert!(!robot.circles.are_found(), "it has sent another one since");
+    hears(&mut robot, BEFORE, &returned);
+    assert_eq!(set_aside(&robot), 0.06);
+    hears(&mut robot, BEFORE, &returned);
+    assert_eq!(set_aside(&robot), 0.06, "a copy");
+    let [(_, Probe { number: 2, flow, .. })] = looks(&mut robot, 8)[..] else {
+        panic!("it sends another probe")
+    };
+    assert!((flow - 0.04).abs() < 1e-12, "{flow}");
+    hears(&mut robot, BEFORE, &probe(2, flow, &[0, NEXT, BEFORE]));
+    assert!((set_aside(&robot) - 0.1).abs() < 1e-12);
+    assert!(looks(&mut robot, 8).is_empty() && !robot.awaits_leases(), "nothing is left");
+    let mut outputs = NodeOutputs::of(0);
+    robot.period += 1;
+    robot.ask_for_flows(&mut outputs);
+    assert!(!robot.circles.are_found() && robot.awaits_leases(), "all of it is looked for again");
 }
 
 /// What flows in the circle ends with the leases of the circle; the sender that is part of it is granted the rest of its
@@ -123,11 +156,11 @@ fn what_does_not_flow_in_the_circle_is_granted_for_longer() {
     let told = |returned: Option<(NodeId, f64)>| {
         let mut robot = on_a_circle();
         let mut outputs = NodeOutputs::of(0);
-        robot.take_in_requests(&mut outputs);
-        grants(&mut outputs);
+        looks(&mut robot, 8);
         if let Some((from, flow)) = returned {
-            robot.hear_probe(from, &probe(flow, &[0, NEXT, from]), &mut outputs);
+            robot.hear_probe(from, &probe(1, flow, &[0, NEXT, from]), &mut outputs);
         }
+        robot.round_count.pass(1);
         robot.take_in_requests(&mut outputs);
         let rounded = |flow: f64| (flow * 100.0).round() / 100.0;
         let grants = grants(&mut outputs).into_iter().map(|(to, grant)| {

@@ -283,41 +283,6 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
     assert_eq!(until(NOW + 5, Some((0.2, NOW + 3))), (0.2, NOW + 5));
 }
 
-/// Where a robot sends back some of what another sends to it, neither grant can be renewed by the other one. What its
-/// other flows carry is granted for longer: all of a third robot's, and of the other's what it does not send back.
-#[test]
-fn what_is_sent_back_carries_no_part_that_is_granted_for_longer() {
-    let told = |to_access_point: f64| {
-        let (mut robot, _) = granted(to_access_point - 0.1);
-        let mut outputs = NodeOutputs::of(0);
-        let back = &mut robot.links[0];
-        back.share = 0.1 / back.reliability;
-        let held = robot.held_flow(5);
-        (held.flow, held.lease) = (0.1, Lease::of(0.1, NOW + 3));
-        robot.reservations[0].lease = Lease::of(0.15, NOW + 3);
-        let number = RequestNumber { period: NOW, number: 2 };
-        robot.hear_request(5, FlowRequest { number, held: 0.15, wanted: 0.15 });
-        robot.hear_request(4, FlowRequest { number, held: 0.0, wanted: 0.0 });
-        robot.reservations[0].lease = Lease::of(0.05, NOW + 3);
-        robot.take_in_requests(&mut outputs);
-        let grants = grants(&mut outputs).into_iter();
-        let rounded = |flow: f64| (flow * 100.0).round() / 100.0;
-        let part = |it: FlowGrant| it.part.map(|part| (rounded(part.flow), part.until - NOW));
-        grants.map(|(to, it)| (to, rounded(it.flow), it.until - NOW, part(it))).collect::<Vec<_>>()
-    };
-    let lease = router().lease();
-    let (four, five) = (Destination::One(4), Destination::One(5));
-    // Rate 0.1, 0.05 more than goes back, and 0.05.
-    let part = Some((0.05, lease));
-    assert_eq!(told(0.2), [(four, 0.05, lease, None), (five, 0.15, 3, part)]);
-    assert_eq!(told(0.19), [(four, 0.05, 3, None), (five, 0.15, 3, None)]);
-    assert_eq!(
-        told(0.3),
-        [(four, 0.05, lease, None), (five, 0.15, lease, None)],
-        "what goes back is not needed"
-    );
-}
-
 /// A grant of a part holds when all of it has ended.
 #[test]
 fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
