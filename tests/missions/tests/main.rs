@@ -15,6 +15,7 @@ mod imported;
 mod medium;
 mod random_missions;
 mod rates;
+mod saturated;
 mod shipped;
 mod storms;
 mod strategies;

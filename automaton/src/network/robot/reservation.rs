@@ -24,9 +24,8 @@
 //! holds in every control period t up to the last for which the robot has granted anything. A robot with c_i < 0 grants
 //! no more, and renews what it has granted for as long as its flows last.
 //!
-//! Where A and B send to each other, each grant waits for the other one to be renewed. So B also grants a part for
-//! longer: F_AB − F_BA, if its flows to others carry that. When the leases end, the difference is left. In a circle of
-//! three or more robots the flows still end with their leases.
+//! Where robots send to each other in a circle, each grant waits for the next one to be renewed. What goes round is found by
+//! probes (`circles`), and the rest granted for longer: it is left when the leases of the circle end.
 
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Lease, Spare};
