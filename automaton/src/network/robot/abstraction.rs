@@ -314,6 +314,7 @@ impl Robot {
             residual: _,
             reservations: _,
             last_request: _,
+            leases_wait: _,
             circles: _,
             has_flow_news: _,
             has_swept: _,

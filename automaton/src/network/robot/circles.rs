@@ -59,7 +59,7 @@ struct Circle {
 
 impl Circles {
     /// Whether the robot is part of one.
-    pub(super) const fn are_found(&self) -> bool {
+    const fn are_found(&self) -> bool {
         !self.found.is_empty()
     }
 
@@ -86,8 +86,20 @@ impl Circles {
 }
 
 impl Robot {
+    /// A control period's reservation begins: what was found in the last one is forgotten.
+    pub(super) fn note_waiting_leases(&mut self) {
+        if std::mem::take(&mut self.leases_wait) {
+            self.circles.forget();
+        }
+        let waits = self.waiting_flows().next().is_some();
+        self.leases_wait = waits;
+    }
+
     /// Chooses the flow that probes follow, and sends one along it. A robot to which nobody sends is part of no circle.
     pub(super) fn look_for_circles(&mut self, outputs: &mut NodeOutputs) {
+        if !self.leases_wait {
+            return;
+        }
         self.circles.next = self.draw_waiting_flow();
         if let Some((to, flow)) = self.circles.next
             && self.senders().next().is_some()
@@ -98,9 +110,9 @@ impl Robot {
         }
     }
 
-    /// Whether leases wait that are not known to be part of a circle.
-    pub(super) fn awaits_leases(&self) -> bool {
-        self.waiting_flows().next().is_some()
+    /// Whether it is part of a circle.
+    pub(super) const fn is_on_circle(&self) -> bool {
+        self.leases_wait && self.circles.are_found()
     }
 
     /// The receivers of flows whose leases wait, each with as much as waits and has not been set aside.

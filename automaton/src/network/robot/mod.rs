@@ -159,6 +159,8 @@ pub struct Robot {
     /// Its links are those that it would find now.
     links_stand: bool,
     is_unsettled: bool,
+    /// Leases of flows that it sends are about to end in this period, or have been.
+    leases_wait: bool,
     must_judge_moves: bool,
 
     id: NodeId,
@@ -195,7 +197,6 @@ pub struct Robot {
     flows: Vec<HeldFlow>,
     reservations: Vec<Reservation>,
     last_request: RequestNumber,
-    circles: Circles,
 
     // Where robots were that it does not hear any more or has only heard of, those that do not take part,
     // and those that are attached to it.
@@ -283,6 +284,9 @@ pub struct Robot {
     longest_wait: usize,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
+
+    /// The circles of flows that it is part of.
+    circles: Circles,
 
     // Motion.
     destination: Option<Destination>,
@@ -398,7 +402,6 @@ impl Robot {
             residual: 0.0,
             reservations: Vec::new(),
             last_request: RequestNumber::default(),
-            circles: Circles::default(),
             has_flow_news: false,
             has_swept: false,
             demands_passed_on: 0,
@@ -410,6 +413,8 @@ impl Robot {
             has_come_to_rest: false,
             links_stand: false,
             is_unsettled: true,
+            leases_wait: false,
+            circles: Circles::default(),
             destination: None,
             waypoint: None,
             goes_by_link: false,

@@ -314,7 +314,7 @@ impl Robot {
             held.wanted = if is_retiring { 0.0 } else { most };
             held.is_due = to < robots && (held.is_in_use() || held.is_open);
         }
-        self.circles.forget();
+        self.note_waiting_leases();
         self.settle_flows(outputs);
     }
 
@@ -523,10 +523,10 @@ impl Robot {
     /// Until when its flows carry [parts](Reservation::part_besides) of what it has granted, where that is longer than until the
     /// period up to which they carry all of it.
     fn parts_last_until(&self, until: u32) -> Option<u32> {
-        let circles = &self.circles;
-        if !circles.are_found() {
+        if !self.is_on_circle() {
             return None;
         }
+        let circles = &self.circles;
         // What has been promised already holds in any case.
         let part =
             |kept: &Reservation, period| kept.part_besides(circles).max(kept.lease.lasting(period));

@@ -141,7 +141,7 @@ impl Robot {
 
     /// The round of the reservation in which the robot asks or looks for circles again, or the last one.
     fn next_of_reservation(&self) -> usize {
-        if self.requests_are_answered() && !self.awaits_leases() {
+        if self.requests_are_answered() && !self.leases_wait {
             return RESERVATION;
         }
         let asked = self.round_count.count() / ROUNDS_FOR_AN_ANSWER;

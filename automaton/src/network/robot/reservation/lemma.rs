@@ -136,6 +136,7 @@ impl Link {
             }
             Step::FindCircle(flow) => {
                 receiver.circles.find(OTHER, OTHER, flow);
+                receiver.leases_wait = true;
                 receiver.has_flow_news = true;
             }
             Step::SenderSettles => sender.take_in_requests(&mut asked),

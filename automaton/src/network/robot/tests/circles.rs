@@ -80,7 +80,7 @@ fn probes_follow_a_lease_that_is_about_to_end() {
     let least = hears(&mut robot, BEFORE, &probe(7, 0.5, &[BEFORE]));
     assert_eq!(least, to_next(probe(7, 0.1, &[BEFORE, 0])), "less flows on from here");
     let elsewhere = hears(&mut robot, BEFORE, &probe(7, 0.05, &[2, 0, 1, BEFORE]));
-    assert!(elsewhere.is_empty() && !robot.circles.are_found(), "its sender is on no circle");
+    assert!(elsewhere.is_empty() && !robot.is_on_circle(), "its sender is on no circle");
     assert_eq!(looks(&mut robot, 8), to_next(probe(2, 0.1, &[0])));
 
     let mut alone = on_a_circle();
@@ -93,7 +93,8 @@ fn a_lease_that_has_been_renewed_waits_for_nothing() {
     let sent = |until: u32| {
         let mut robot = on_a_circle();
         robot.held_flow(NEXT).lease = Lease::of(0.1, until);
-        let waits = robot.awaits_leases();
+        robot.note_waiting_leases();
+        let waits = robot.leases_wait;
         assert_eq!(looks(&mut robot, 8).is_empty(), !waits);
         waits
     };
@@ -131,7 +132,7 @@ fn circles_with_a_link_in_common_share_what_flows_there() {
     looks(&mut robot, 8);
     let returned = probe(1, 0.06, &[0, NEXT, BEFORE]);
     hears(&mut robot, BEFORE, &probe(0, 0.06, &[0, NEXT, BEFORE]));
-    assert!(!robot.circles.are_found(), "it has sent another one since");
+    assert!(!robot.is_on_circle(), "it has sent another one since");
     hears(&mut robot, BEFORE, &returned);
     assert_eq!(set_aside(&robot), 0.06);
     hears(&mut robot, BEFORE, &returned);
@@ -142,11 +143,11 @@ fn circles_with_a_link_in_common_share_what_flows_there() {
     assert!((flow - 0.04).abs() < 1e-12, "{flow}");
     hears(&mut robot, BEFORE, &probe(2, flow, &[0, NEXT, BEFORE]));
     assert!((set_aside(&robot) - 0.1).abs() < 1e-12);
-    assert!(looks(&mut robot, 8).is_empty() && !robot.awaits_leases(), "nothing is left");
+    assert!(looks(&mut robot, 8).is_empty(), "nothing is left");
     let mut outputs = NodeOutputs::of(0);
     robot.period += 1;
     robot.ask_for_flows(&mut outputs);
-    assert!(!robot.circles.are_found() && robot.awaits_leases(), "all of it is looked for again");
+    assert!(!robot.is_on_circle() && robot.leases_wait, "all of it is looked for again");
 }
 
 /// What flows in the circle ends with the leases of the circle; the sender that is part of it is granted the rest of its
