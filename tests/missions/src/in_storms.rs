@@ -76,7 +76,7 @@ fn draw_settings(scenario: &mut Scenario, dice: &mut Dice) {
     control.clearance = Some(clearance);
     control.service_radius = Some(clearance * dice.between(2.3, 9.0));
     control.step_radius = Some(clearance * dice.between(0.5, 1.5));
-    control.rounds_per_period = Some(dice.pick(&[4, 6, 8, 12, 20]));
+    control.rounds_per_period = Some(dice.pick(&[1, 2, 4, 6, 8, 12, 20]));
     control.period = Some(dice.pick(&[0.3, 1.0, 7.0]));
     control.tree_reliability = Some(dice.pick(&[0.03, 0.1, 0.4]));
     control.routing_method = Some(dice.pick(&[
