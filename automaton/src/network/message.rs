@@ -70,7 +70,7 @@ pub enum Message {
     AskFlow(#[serde(with = "wire")] FlowRequest),
     /// The sender grants the receiver a flow towards itself.
     GrantFlow(#[serde(with = "wire")] FlowGrant),
-    /// Leases of flows wait to be renewed, the sender's to the receiver last: a circle of them is looked for.
+    /// Follows flows whose leases wait to be renewed, to find a circle of them.
     Probe(#[serde(with = "wire")] Probe),
     /// The move that the sender intends, to all nodes in range.
     Proposal {

@@ -1,10 +1,11 @@
-//! Missions that failed once, found by random floor plans. Each file says what went wrong; all
-//! tasks of all of them are serviced, with every property monitored.
+//! Missions that failed once, or do, found by random floor plans. Each file says what went wrong; every property is
+//! monitored.
 
 use missions::{files, read};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::mission;
 
+/// All of their tasks are serviced now.
 #[test]
 fn what_failed_once_does_not_fail_again() {
     for (end, said) in ends("tests/scenarios/found") {

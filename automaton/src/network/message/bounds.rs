@@ -58,7 +58,8 @@ impl Bounds {
                     && part.is_none_or(|part| is_period(part.until))
             }
             Message::Probe(probe) => {
-                probe.robots.len() <= self.robots
+                (1..=self.robots).contains(&probe.robots.len())
+                    && probe.flow >= 0.0
                     && probe.robots.iter().all(|&robot| self.has_robot(robot))
             }
             Message::Request(order) => order.tasks.len() <= MOST_TASKS,

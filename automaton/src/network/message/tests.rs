@@ -356,6 +356,8 @@ fn messages_that_no_node_can_have_sent_are_impossible() {
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.1 }),
         Message::Probe(Probe { number: 1, flow: 0.1, robots: vec![nobody] }),
         Message::Probe(Probe { number: 1, flow: 0.1, robots: vec![0; nobody + 1] }),
+        Message::Probe(Probe { number: 1, flow: 0.1, robots: vec![] }),
+        Message::Probe(Probe { number: 1, flow: -0.1, robots: vec![0] }),
         Message::News(Bulletin::first(Shared::new(Notice::Serviced { task: usize::MAX }))),
         Message::News(Bulletin::first(Shared::new(Notice::Call {
             caller: nobody,

@@ -10,15 +10,15 @@
 //! that follow are about what is left, so that circles with a link in common are found one after another, none for more
 //! than there is.
 //!
-//! What is not set aside is granted for longer (by `reservation`). What is set aside ends with the
-//! leases of the circle, at all of its robots in the same control period. Whatever probes say, no more is granted for
-//! longer than what flows last that long.
+//! What is not set aside is granted for longer (by `reservation`). What is set aside ends with the leases of the circle, at
+//! all of its robots in the same control period if each of them has heard its own probe. Whatever probes say, a robot
+//! grants nothing for longer than its own flows carry it.
 
 use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
 
 use super::Robot;
-use super::reservation::{HeldFlow, SAME_FLOW};
+use super::reservation::SAME_FLOW;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 
@@ -39,8 +39,10 @@ pub struct Probe {
 pub(super) struct Circles {
     /// The number of its newest probe.
     number: u32,
-    /// Whether this has not returned.
+    /// Whether it is still under way.
     is_out: bool,
+    /// How many probes of others it has passed on since.
+    passed_on: usize,
     /// The receiver of the flow that probes follow from here for now, and as much of it as waits.
     next: Option<(NodeId, f64)>,
     found: Vec<Circle>,
@@ -58,35 +60,41 @@ struct Circle {
 }
 
 impl Circles {
-    /// Whether the robot is part of one.
-    const fn are_found(&self) -> bool {
-        !self.found.is_empty()
-    }
-
     /// What has been set aside of all that this node sends here.
     pub(super) fn set_aside_from(&self, sender: NodeId) -> f64 {
-        self.found.iter().filter(|it| it.from == sender).map(|it| it.flow).sum()
+        self.set_aside(|circle| circle.from == sender)
     }
 
     /// What has been set aside of all that the robot sends to this node.
     fn set_aside_to(&self, receiver: NodeId) -> f64 {
-        self.found.iter().filter(|it| it.to == receiver).map(|it| it.flow).sum()
+        self.set_aside(|circle| circle.to == receiver)
+    }
+
+    fn set_aside(&self, counts: impl Fn(&Circle) -> bool) -> f64 {
+        self.found.iter().filter(|circle| counts(circle)).map(|circle| circle.flow).sum()
     }
 
     /// So much goes round a circle, beside what has been found before.
-    pub(super) fn find(&mut self, from: NodeId, to: NodeId, flow: f64) {
+    pub(super) fn add(&mut self, from: NodeId, to: NodeId, flow: f64) {
         self.found.push(Circle { from, to, flow });
     }
 
     /// A control period begins.
-    pub(super) fn forget(&mut self) {
+    fn forget(&mut self) {
         (self.is_out, self.next) = (false, None);
         self.found.clear();
     }
 }
 
+/// A number that is as good as drawn by lot from this one: the last steps of SplitMix64.
+const fn lot(number: u64) -> u64 {
+    let mixed = (number ^ (number >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ (mixed >> 31)
+}
+
 impl Robot {
-    /// A control period's reservation begins: what was found in the last one is forgotten.
+    /// The reservation of a control period begins: what was found in the last one is forgotten.
     pub(super) fn note_waiting_leases(&mut self) {
         if std::mem::take(&mut self.leases_wait) {
             self.circles.forget();
@@ -100,8 +108,9 @@ impl Robot {
         if !self.leases_wait {
             return;
         }
-        self.circles.next = self.draw_waiting_flow();
-        if let Some((to, flow)) = self.circles.next
+        let next = self.draw_waiting_flow();
+        (self.circles.next, self.circles.is_out, self.circles.passed_on) = (next, false, 0);
+        if let Some((to, flow)) = next
             && self.senders().next().is_some()
         {
             let number = self.circles.number.wrapping_add(1);
@@ -110,33 +119,33 @@ impl Robot {
         }
     }
 
-    /// Whether it is part of a circle.
+    /// Whether it knows of a circle that it is part of.
     pub(super) const fn is_on_circle(&self) -> bool {
-        self.leases_wait && self.circles.are_found()
+        !self.circles.found.is_empty()
     }
 
-    /// The receivers of flows whose leases wait, each with as much as waits and has not been set aside.
+    /// The robots to which it sends over leases that wait, each with as much as waits and has not been set aside.
     fn waiting_flows(&self) -> impl Iterator<Item = (NodeId, f64)> {
-        let period = self.period;
-        let waiting = move |held: &HeldFlow| {
-            let flow = held.waiting(period);
-            let left = if flow > 0.0 { flow - self.circles.set_aside_to(held.to()) } else { flow };
-            (left > SAME_FLOW).then_some((held.to(), left))
-        };
-        self.flows.iter().filter_map(waiting)
+        let (period, robots) = (self.period, self.site.robots);
+        let to_robots = self.flows.iter().filter(move |held| held.to() < robots);
+        let waiting = to_robots.map(move |held| (held.to(), held.waiting(period)));
+        waiting
+            .filter(|&(_, flow)| flow > SAME_FLOW)
+            .map(|(to, flow)| (to, flow - self.circles.set_aside_to(to)))
+            .filter(|&(_, left)| left > SAME_FLOW)
     }
 
-    /// Where several leases wait, another one each time: as good as drawn by lot, so that every choice of all robots comes up
-    /// in time.
+    /// Where several leases wait, another one each time: drawn by lot, so that every choice of all robots comes up in
+    /// time.
     fn draw_waiting_flow(&self) -> Option<(NodeId, f64)> {
         let count = self.waiting_flows().count();
-        let time = u64::from(self.period) << 8 | self.round_count.times_asked_again() as u64;
-        let lot = (time ^ (self.id as u64) << 40).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
-        self.waiting_flows().nth((lot as usize).checked_rem(count)?)
+        let look = u64::from(self.period) << 8 | self.round_count.times_asked_again() as u64;
+        let drawn = lot(look ^ (self.id as u64) << 40) as usize;
+        self.waiting_flows().nth(drawn.checked_rem(count)?)
     }
 
-    /// Sets aside what goes round a circle where this is the robot's own probe, and passes on that of another robot, unless
-    /// it has done so before.
+    /// Sets aside what goes round a circle where this is the robot's own probe, and passes on that of another robot that
+    /// has not come by before.
     pub(super) fn hear_probe(&mut self, from: NodeId, probe: &Probe, outputs: &mut NodeOutputs) {
         match probe.robots.iter().position(|&robot| robot == self.id) {
             Some(0) => self.close_circle(from, probe),
@@ -146,20 +155,26 @@ impl Robot {
     }
 
     fn close_circle(&mut self, from: NodeId, probe: &Probe) {
+        let flow = probe.flow.min(self.granted_to(from));
         let Circles { number, is_out, next, .. } = &mut self.circles;
         if probe.number == *number
+            && flow > 0.0
             && std::mem::take(is_out)
             && let Some((to, _)) = *next
         {
-            self.circles.find(from, to, probe.flow);
+            self.circles.add(from, to, flow);
             self.has_flow_news = true;
         }
     }
 
-    fn pass_on(&self, probe: &Probe, outputs: &mut NodeOutputs) {
+    /// As many as there are robots, so that copies do not add up on a long way.
+    fn pass_on(&mut self, probe: &Probe, outputs: &mut NodeOutputs) {
         let Some((to, left)) = self.circles.next else { return };
-        let robots = probe.robots.iter().copied().chain([self.id]).collect();
-        let flow = probe.flow.min(left);
-        outputs.send(to, Message::Probe(Probe { flow, robots, ..*probe }));
+        if self.circles.passed_on < self.site.robots {
+            self.circles.passed_on += 1;
+            let robots = probe.robots.iter().copied().chain([self.id]).collect();
+            let flow = probe.flow.min(left);
+            outputs.send(to, Message::Probe(Probe { flow, robots, ..*probe }));
+        }
     }
 }

@@ -159,7 +159,7 @@ pub struct Robot {
     /// Its links are those that it would find now.
     links_stand: bool,
     is_unsettled: bool,
-    /// Leases of flows that it sends are about to end in this period, or have been.
+    /// Leases of its flows were about to end when the reservation of this period began.
     leases_wait: bool,
     must_judge_moves: bool,
 

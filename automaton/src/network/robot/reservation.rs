@@ -43,7 +43,7 @@ mod lemma;
 /// Control periods for which a grant holds at the least as long as no message is lost. Every flow is asked for
 /// again in each of them.
 const LEASE: u32 = 8;
-/// What ends within so many control periods waits to be renewed.
+/// What does not hold any more in so many control periods is about to end, and waits to be renewed.
 const ABOUT_TO_END: u32 = LEASE - 2;
 /// How many leases long packets flow to an access point that is not heard. It promises nothing to anyone, so
 /// that nothing ends but its service.
@@ -167,13 +167,13 @@ impl Reservation {
 
     /// What is left of it when what flows in circles has ended.
     fn part_besides(&self, circles: &Circles) -> f64 {
-        (self.lease.flow() - circles.set_aside_from(self.from)).max(0.0)
+        let all = self.lease.flow();
+        (all - circles.set_aside_from(self.from)).clamp(0.0, all)
     }
 
     /// Whether its sender has asked for it in this control period, and some of it is about to end.
     fn waits(&self, period: u32) -> bool {
-        self.asked.period == period
-            && self.lease.lasting(period.saturating_add(ABOUT_TO_END)) < self.lease.flow()
+        self.asked.period == period && self.lease.lasting(soon_after(period)) < self.lease.flow()
     }
 }
 
@@ -210,7 +210,7 @@ impl HeldFlow {
 
     /// What of it is about to end, and waits to be renewed.
     pub fn waiting(&self, period: u32) -> f64 {
-        self.flow - self.lasting(period.saturating_add(ABOUT_TO_END))
+        self.flow - self.lasting(soon_after(period))
     }
 
     /// What will be left of it in a control period ahead if no grant is renewed.
@@ -272,6 +272,11 @@ fn replace_flows(flows: &mut [&mut HeldFlow], promised: u32) -> f64 {
         taken_over += taken;
     }
     taken_over
+}
+
+/// The control period in which what is about to end has ended.
+const fn soon_after(period: u32) -> u32 {
+    period.saturating_add(ABOUT_TO_END)
 }
 
 /// Where the flow to `node` is among flows, which are in the order of their receivers; or where it belongs.
@@ -379,6 +384,12 @@ impl Robot {
         self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0).map(|kept| kept.from)
     }
 
+    /// What this node may send to this one.
+    pub(super) fn granted_to(&self, node: NodeId) -> f64 {
+        let known = self.reservations.binary_search_by_key(&node, |kept| kept.from);
+        known.map_or(0.0, |at| self.reservations[at].lease.flow())
+    }
+
     fn ask(&mut self, at: usize, outputs: &mut NodeOutputs) {
         let RequestNumber { period, number } = self.last_request;
         let number = if period == self.period { number + 1 } else { 1 };
@@ -479,9 +490,10 @@ impl Robot {
         }
     }
 
-    /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
-    /// granted for as long as these last; [a part](Reservation::part_besides) for longer where some of it comes back. What is about to
-    /// end is renewed whenever it can be, so that all leases that wait for each other are in the same control period.
+    /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has granted for as
+    /// long as these last; [a part](Reservation::part_besides) for longer where a circle of flows has been found. What is
+    /// about to end is renewed without another request, so that all leases of a circle are renewed in the same control
+    /// period.
     fn grant_flows(&mut self, outputs: &mut NodeOutputs) {
         let needed = self.needed_outflow();
         let wanted =
@@ -501,14 +513,14 @@ impl Robot {
             if can_grant {
                 spare.grant(before, flow);
             }
-            let is_asked = can_grant || !std::mem::replace(&mut kept.is_answered, true);
-            if is_asked || waits {
+            let is_told = can_grant || !std::mem::replace(&mut kept.is_answered, true);
+            if is_told || waits {
                 lease.promise(before, until);
                 if let Some((flow, longer)) = part {
                     lease.promise(flow, longer);
                 }
             }
-            if is_asked || *lease != told {
+            if is_told || *lease != told {
                 let grant = FlowGrant::of(kept.asked, lease);
                 outputs.send(kept.from, Message::GrantFlow(grant));
             }

@@ -105,6 +105,7 @@ impl Link {
             Step::SendOn(0.3),
             Step::SendBack(3),
             Step::FindCircle(0.1),
+            Step::FindCircle(0.4),
             Step::SenderSettles,
             Step::ReceiverSettles,
         ];
@@ -135,7 +136,7 @@ impl Link {
                 (held.flow, held.lease) = (BACK, lease);
             }
             Step::FindCircle(flow) => {
-                receiver.circles.find(OTHER, OTHER, flow);
+                receiver.circles.add(OTHER, OTHER, flow);
                 receiver.leases_wait = true;
                 receiver.has_flow_news = true;
             }

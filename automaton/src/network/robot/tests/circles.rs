@@ -1,5 +1,7 @@
 //! Flows in circles: which probes a robot sends and passes on, and what it makes of its own.
 
+use std::collections::BTreeSet;
+
 use pleach_discrete::network::reservation::Lease;
 
 use super::flows::{grants, router};
@@ -7,6 +9,7 @@ use super::*;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 use crate::network::robot::Probe;
+use crate::network::robot::circles::Circles;
 use crate::network::robot::reservation::{FlowRequest, RequestNumber};
 use crate::node::Destination;
 
@@ -89,6 +92,15 @@ fn probes_follow_a_lease_that_is_about_to_end() {
 }
 
 #[test]
+fn copies_of_probes_do_not_add_up() {
+    let mut robot = on_a_circle();
+    looks(&mut robot, 8);
+    let copies =
+        (0..3 * ROBOTS).flat_map(|_| hears(&mut robot, BEFORE, &probe(7, 0.05, &[BEFORE])));
+    assert_eq!(copies.count(), ROBOTS);
+}
+
+#[test]
 fn a_lease_that_has_been_renewed_waits_for_nothing() {
     let sent = |until: u32| {
         let mut robot = on_a_circle();
@@ -106,9 +118,8 @@ fn a_lease_that_has_been_renewed_waits_for_nothing() {
     assert!((flow - 0.03).abs() < 1e-12, "{flow}");
 }
 
-/// Where several wait, probes follow now this one and now that one, so that each circle is found in time.
-#[test]
-fn probes_follow_one_lease_or_another() {
+/// As [`on_a_circle`], and another lease is about to end: that of a flow to robot 4.
+fn on_two_circles() -> Robot {
     let mut robot = on_a_circle();
     robot.hears(beacon(OTHER, east(1.0), fixed(14, 13), &[13, 14]));
     robot.survey_links();
@@ -117,11 +128,25 @@ fn probes_follow_one_lease_or_another() {
     (held.flow, held.lease) = (0.1, Lease::of(0.1, NOW + LEFT));
     robot.ask_for_flows(&mut NodeOutputs::of(0));
     robot.round_count.restart();
-    let mut followed: Vec<_> =
-        (0..11).flat_map(|_| looks(&mut robot, 8)).map(|(to, _)| to).collect();
-    followed.sort_unstable();
-    followed.dedup();
-    assert_eq!(followed, [OTHER, NEXT].map(Destination::One));
+    robot
+}
+
+/// Two robots that choose between two flows each, in sixty looks: whichever way a circle takes, probes follow it in some.
+#[test]
+fn every_choice_of_two_robots_comes_up() {
+    let choices = |id: NodeId| {
+        let mut robot = on_two_circles();
+        robot.id = id;
+        let looks = (0..60).map(move |look| {
+            (robot.period, robot.circles) = (NOW + look / 10, Circles::default());
+            robot.round_count.restart();
+            looks(&mut robot, 8 * (look as usize % 10 + 1))
+        });
+        looks.map(|sent| sent[0].0).collect::<Vec<_>>()
+    };
+    let [first, second] = [choices(0), choices(2)];
+    let both: BTreeSet<_> = first.iter().zip(&second).collect();
+    assert_eq!(both.len(), 4);
 }
 
 /// What has been found to go round a circle is set aside, once, and further probes are about the rest.
@@ -133,6 +158,8 @@ fn circles_with_a_link_in_common_share_what_flows_there() {
     let returned = probe(1, 0.06, &[0, NEXT, BEFORE]);
     hears(&mut robot, BEFORE, &probe(0, 0.06, &[0, NEXT, BEFORE]));
     assert!(!robot.is_on_circle(), "it has sent another one since");
+    hears(&mut robot, 2, &probe(1, 0.06, &[0, NEXT, 2]));
+    assert!(!robot.is_on_circle(), "nothing has been granted to that one");
     hears(&mut robot, BEFORE, &returned);
     assert_eq!(set_aside(&robot), 0.06);
     hears(&mut robot, BEFORE, &returned);
@@ -144,10 +171,13 @@ fn circles_with_a_link_in_common_share_what_flows_there() {
     hears(&mut robot, BEFORE, &probe(2, flow, &[0, NEXT, BEFORE]));
     assert!((set_aside(&robot) - 0.1).abs() < 1e-12);
     assert!(looks(&mut robot, 8).is_empty(), "nothing is left");
+    let late = probe(2, 0.1, &[0, NEXT, BEFORE]);
     let mut outputs = NodeOutputs::of(0);
     robot.period += 1;
     robot.ask_for_flows(&mut outputs);
     assert!(!robot.is_on_circle() && robot.leases_wait, "all of it is looked for again");
+    hears(&mut robot, BEFORE, &late);
+    assert!(!robot.is_on_circle(), "it is of the period before");
 }
 
 /// What flows in the circle ends with the leases of the circle; the sender that is part of it is granted the rest of its
