@@ -194,7 +194,7 @@ impl HeldFlow {
     }
 
     /// The receiver.
-    pub const fn to(&self) -> NodeId {
+    pub(super) const fn to(&self) -> NodeId {
         self.to
     }
 
@@ -209,7 +209,7 @@ impl HeldFlow {
     }
 
     /// What of it is about to end, and waits to be renewed.
-    pub fn waiting(&self, period: u32) -> f64 {
+    pub(super) fn waiting(&self, period: u32) -> f64 {
         self.flow - self.lasting(soon_after(period))
     }
 
