@@ -6,12 +6,12 @@
 //! [doi:10.1145/357360.357365](https://doi.org/10.1145/357360.357365)). A robot one of whose leases is about to end sends
 //! a [`Probe`] along that flow, and a robot that hears it passes it on along such a flow of its own. A probe that returns
 //! to its sender has gone round a circle. The least flow on its way is what goes round and reaches no access point: each
-//! robot of the circle sets as much aside of what it sends and of what it is sent there, as its own probe tells it. Probes
-//! that follow are about what is left, so that circles with a link in common are found one after another, none for more
-//! than there is.
+//! robot of the circle sets as much aside of what it sends and of what it is sent there, as its own probe tells it.
+//! Probes that follow are about what is left, so that circles with a link in common are found one after another, none
+//! for more than there is.
 //!
-//! What is not set aside is granted for longer (by `reservation`). What is set aside ends with the leases of the circle, at
-//! all of its robots in the same control period if each of them has heard its own probe. Whatever probes say, a robot
+//! What is not set aside is granted for longer (by `reservation`). What is set aside ends with the leases of the circle,
+//! at all of its robots in the same control period if each of them has heard its own probe. Whatever probes say, a robot
 //! grants nothing for longer than its own flows carry it.
 
 use pleach_discrete::network::NodeId;

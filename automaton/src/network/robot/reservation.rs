@@ -12,7 +12,8 @@
 //!
 //! holds from the first period in which it does, as long as grants are renewed: a message that is lost
 //! leaves flows as they are until a lease ends. A request is answered by a grant, which tells all that is kept for the
-//! sender; a new request voids the grants before it, so that late messages and copies change nothing.
+//! sender, and what is about to end is renewed by further ones. A new request voids the grants before it, so that late
+//! messages and copies change nothing.
 //!
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
 //! where grants are not renewed, flows end at those who send first. If c_i ≥ 0 now,
@@ -24,8 +25,8 @@
 //! holds in every control period t up to the last for which the robot has granted anything. A robot with c_i < 0 grants
 //! no more, and renews what it has granted for as long as its flows last.
 //!
-//! Where robots send to each other in a circle, each grant waits for the next one to be renewed. What goes round is found by
-//! probes (`circles`), and the rest granted for longer: it is left when the leases of the circle end.
+//! Where robots send to each other in a circle, each grant waits for the next one to be renewed. What goes round is
+//! found by probes (`circles`), and the rest granted for longer: it is left when the leases of the circle end.
 
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Lease, Spare};
@@ -532,8 +533,8 @@ impl Robot {
         self.period.saturating_add(self.lease())
     }
 
-    /// Until when its flows carry [parts](Reservation::part_besides) of what it has granted, where that is longer than until the
-    /// period up to which they carry all of it.
+    /// Until when its flows carry [parts](Reservation::part_besides) of what it has granted, where that is longer than
+    /// until the period up to which they carry all of it.
     fn parts_last_until(&self, until: u32) -> Option<u32> {
         if !self.is_on_circle() {
             return None;
