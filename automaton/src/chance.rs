@@ -10,6 +10,13 @@ pub(crate) struct Chance {
 /// The golden ratio as a fraction of 2⁶⁴, made odd.
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
+/// A number that looks drawn at random, and is the same for the same `number`: the output function of SplitMix64.
+pub(crate) const fn mixed(number: u64) -> u64 {
+    let mixed = (number ^ (number >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    mixed ^ (mixed >> 31)
+}
+
 impl Chance {
     /// The sequence with this number among those of a seed.
     pub(crate) fn new(seed: u64, number: usize) -> Self {
@@ -20,9 +27,7 @@ impl Chance {
 
     fn next(&mut self) -> u64 {
         self.state = self.state.wrapping_add(STEP);
-        let mixed = (self.state ^ (self.state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
+        mixed(self.state)
     }
 
     /// An even draw from [0, 1).

@@ -23,6 +23,8 @@ pub struct Arrival {
     pub distance: Option<f64>,
     /// Whether it is a beacon.
     pub is_beacon: bool,
+    /// Whether it is a probe for circles of flows.
+    pub is_probe: bool,
 }
 
 /// What happens to a message between the radio and a node that would hear it.
@@ -135,7 +137,8 @@ impl<F: FnMut(Arrival) -> bool> Passage for Filtered<F> {
         let (number, period) = (self.messages, self.updates - 1);
         self.messages += 1;
         let is_beacon = matches!(delivery.message, Message::Beacon { .. });
-        let arrival = Arrival { number, period, sender, receiver, distance, is_beacon };
+        let is_probe = matches!(delivery.message, Message::Probe(_));
+        let arrival = Arrival { number, period, sender, receiver, distance, is_beacon, is_probe };
         if (self.loses)(arrival) { Ok(()) } else { hand_over(delivery) }
     }
 }

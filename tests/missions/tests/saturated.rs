@@ -4,11 +4,9 @@
 //! Many with `cargo test --release -p missions --test it saturated -- --ignored`.
 
 use missions::floor_plans::Dice;
-use missions::{Passage, Through, files, read, run_over};
-use pleach::automaton::network::Message;
+use missions::{Filtered, files, read, run_over};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::{Scenario, ValidScenario};
-use pleach::automaton::node::Delivery;
 use pleach::mission::run;
 use rayon::prelude::*;
 use serde_json::json;
@@ -91,27 +89,11 @@ fn leases_that_wait_for_each_other_end_no_mission() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Loses all probes.
-struct WithoutProbes;
-
-impl Passage for WithoutProbes {
-    fn pass<E>(
-        &mut self,
-        delivery: Delivery<'_, Message>,
-        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
-    ) -> Result<(), E> {
-        match delivery.message {
-            Message::Probe(_) => Ok(()),
-            _ => hand_over(delivery),
-        }
-    }
-}
-
 /// It is the probes that end circles.
 #[test]
 fn without_probes_a_circle_ends_the_mission() {
     let scenario = read("tests/scenarios/circles/leases-in-a-circle.toml").into_scenario();
-    let mission = run_over(scenario, |site| Through::new(site, WithoutProbes)).0;
+    let mission = run_over(scenario, |site| Filtered::new(site, |it| it.is_probe)).0;
     let end = mission.end;
     assert_eq!(end.outcome, Outcome::InvariantViolated, "{}", end.reason);
     assert!(end.reason.contains("residual"), "{}", end.reason);

@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Robot;
 use super::reservation::SAME_FLOW;
+use crate::chance::mixed;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 
@@ -86,13 +87,6 @@ impl Circles {
     }
 }
 
-/// A number that is as good as drawn by lot from this one: the last steps of SplitMix64.
-const fn lot(number: u64) -> u64 {
-    let mixed = (number ^ (number >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    mixed ^ (mixed >> 31)
-}
-
 impl Robot {
     /// The reservation of a control period begins: what was found in the last one is forgotten.
     pub(super) fn note_waiting_leases(&mut self) {
@@ -127,8 +121,8 @@ impl Robot {
     /// The robots to which it sends over leases that wait, each with as much as waits and has not been set aside.
     fn waiting_flows(&self) -> impl Iterator<Item = (NodeId, f64)> {
         let (period, robots) = (self.period, self.site.robots);
-        let to_robots = self.flows.iter().filter(move |held| held.to() < robots);
-        let waiting = to_robots.map(move |held| (held.to(), held.waiting(period)));
+        let to_robots = self.flows.iter().filter(move |held| held.to < robots);
+        let waiting = to_robots.map(move |held| (held.to, held.waiting(period)));
         waiting
             .filter(|&(_, flow)| flow > SAME_FLOW)
             .map(|(to, flow)| (to, flow - self.circles.set_aside_to(to)))
@@ -140,7 +134,7 @@ impl Robot {
     fn draw_waiting_flow(&self) -> Option<(NodeId, f64)> {
         let count = self.waiting_flows().count();
         let look = u64::from(self.period) << 8 | self.round_count.times_asked_again() as u64;
-        let drawn = lot(look ^ (self.id as u64) << 40) as usize;
+        let drawn = mixed(look ^ (self.id as u64) << 40) as usize;
         self.waiting_flows().nth(drawn.checked_rem(count)?)
     }
 
@@ -167,7 +161,7 @@ impl Robot {
         }
     }
 
-    /// As many as there are robots, so that copies do not add up on a long way.
+    /// At most as many as there are robots, so that copies do not add up on a long way.
     fn pass_on(&mut self, probe: &Probe, outputs: &mut NodeOutputs) {
         let Some((to, left)) = self.circles.next else { return };
         if self.circles.passed_on < self.site.robots {

@@ -44,7 +44,7 @@ mod lemma;
 /// Control periods for which a grant holds at the least as long as no message is lost. Every flow is asked for
 /// again in each of them.
 const LEASE: u32 = 8;
-/// What does not hold any more in so many control periods is about to end, and waits to be renewed.
+/// A lease that will have ended this many control periods from now is about to end, and waits to be renewed.
 const ABOUT_TO_END: u32 = LEASE - 2;
 /// How many leases long packets flow to an access point that is not heard. It promises nothing to anyone, so
 /// that nothing ends but its service.
@@ -106,7 +106,7 @@ pub struct GrantedPart {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct HeldFlow {
     /// The receiver.
-    to: NodeId,
+    pub(super) to: NodeId,
     /// R_ij.
     reliability: f64,
     /// F_ij as it is in use.
@@ -180,7 +180,7 @@ impl Reservation {
 
 impl HeldFlow {
     /// None yet, to this node.
-    fn new(to: NodeId) -> Self {
+    fn to(to: NodeId) -> Self {
         HeldFlow { to, ..HeldFlow::default() }
     }
 
@@ -192,11 +192,6 @@ impl HeldFlow {
     /// Whether packets flow, or shall. Others have nothing to raise, to lower or to keep.
     const fn is_in_use(&self) -> bool {
         self.flow > 0.0 || self.wanted > 0.0
-    }
-
-    /// The receiver.
-    pub(super) const fn to(&self) -> NodeId {
-        self.to
     }
 
     /// Whether the flow is to be raised or lowered.
@@ -369,7 +364,7 @@ impl Robot {
     /// The flow to a node to which there is a link.
     pub(super) fn held_flow(&mut self, node: NodeId) -> &mut HeldFlow {
         let at = place_of(&self.flows, node).unwrap_or_else(|at| {
-            self.flows.insert(at, HeldFlow::new(node));
+            self.flows.insert(at, HeldFlow::to(node));
             at
         });
         &mut self.flows[at]
@@ -385,10 +380,14 @@ impl Robot {
         self.reservations.iter().filter(|kept| kept.lease.flow() > 0.0).map(|kept| kept.from)
     }
 
+    /// Where the reservation for this sender is, or where it belongs.
+    fn reservation_of(&self, sender: NodeId) -> Result<usize, usize> {
+        self.reservations.binary_search_by_key(&sender, |kept| kept.from)
+    }
+
     /// What this node may send to this one.
     pub(super) fn granted_to(&self, node: NodeId) -> f64 {
-        let known = self.reservations.binary_search_by_key(&node, |kept| kept.from);
-        known.map_or(0.0, |at| self.reservations[at].lease.flow())
+        self.reservation_of(node).map_or(0.0, |at| self.reservations[at].lease.flow())
     }
 
     fn ask(&mut self, at: usize, outputs: &mut NodeOutputs) {
@@ -406,7 +405,7 @@ impl Robot {
     /// A sender asks for a flow.
     pub(super) fn hear_request(&mut self, from: NodeId, request: FlowRequest) {
         let FlowRequest { number, held, wanted } = request;
-        let known = self.reservations.binary_search_by_key(&from, |kept| kept.from);
+        let known = self.reservation_of(from);
         if known.is_ok_and(|at| number <= self.reservations[at].asked) {
             return;
         }

@@ -144,7 +144,7 @@ impl Robot {
         if self.requests_are_answered() && !self.leases_wait {
             return RESERVATION;
         }
-        let asked = self.round_count.count() / ROUNDS_FOR_AN_ANSWER;
+        let asked = self.round_count.times_asked_again();
         ((asked + 1) * ROUNDS_FOR_AN_ANSWER).min(RESERVATION)
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use pleach_discrete::network::reservation::Lease;
 
-use super::flows::{grants, router};
+use super::flows::{grants, router, sent};
 use super::*;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
@@ -61,8 +61,7 @@ fn probes(outputs: &mut NodeOutputs) -> Vec<(Destination, Probe)> {
         Message::Probe(probe) => Some((to, probe)),
         _ => None,
     };
-    let sent = outputs.drain_sent().map(|envelope| (envelope.to, envelope.message));
-    sent.filter_map(probe).collect()
+    sent(outputs).into_iter().filter_map(probe).collect()
 }
 
 fn probe(number: u32, flow: f64, robots: &[NodeId]) -> Probe {

@@ -25,7 +25,7 @@ pub(in super::super) fn router() -> Robot {
     robot
 }
 
-fn sent(outputs: &mut NodeOutputs) -> Vec<(Destination, Message)> {
+pub(super) fn sent(outputs: &mut NodeOutputs) -> Vec<(Destination, Message)> {
     outputs.drain_sent().map(|envelope| (envelope.to, envelope.message)).collect()
 }
 
