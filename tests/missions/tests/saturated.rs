@@ -79,10 +79,10 @@ fn complaints(seeds: impl IntoParallelIterator<Item = u64>) -> Vec<String> {
     seeds.into_par_iter().filter_map(|seed| complaint(&saturated(seed))).collect()
 }
 
-/// Each of these has ended with residuals below 0 under rules that found some circles and not all.
+/// Each file says what went wrong in it once.
 #[test]
-fn leases_that_wait_for_each_other_end_no_mission() {
-    let wrong: Vec<_> = files("tests/scenarios/circles")
+fn what_failed_once_does_not_fail_again() {
+    let wrong: Vec<_> = files("tests/scenarios/saturated")
         .into_iter()
         .filter_map(|it| complaint(&read(it)))
         .collect();
@@ -92,7 +92,7 @@ fn leases_that_wait_for_each_other_end_no_mission() {
 /// It is the probes that end circles.
 #[test]
 fn without_probes_a_circle_ends_the_mission() {
-    let scenario = read("tests/scenarios/circles/leases-in-a-circle.toml").into_scenario();
+    let scenario = read("tests/scenarios/saturated/leases-in-a-circle.toml").into_scenario();
     let mission = run_over(scenario, |site| Filtered::new(site, |it| it.is_probe)).0;
     let end = mission.end;
     assert_eq!(end.outcome, Outcome::InvariantViolated, "{}", end.reason);

@@ -12,6 +12,9 @@
 //! again if the mover comes back with its offer. A mover that cannot pass takes a partner that is somewhat
 //! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice.
 //!
+//! Each of the two sees to it that its own links of the tree hold from where the other one stands. Exchanges side by side
+//! do not know of each other: a link has to reach whoever may stand for the robot at its other end in the next moment.
+//!
 //! [`Offers`]: pleach_discrete::network::Offers
 
 use pleach_continuous::Point;
@@ -76,7 +79,8 @@ impl Robot {
         let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
         for neighbour in self.neighbours.iter() {
-            if neighbour.distance <= contact * self.clearance() && self.could_replace(neighbour) {
+            let touches = neighbour.distance <= contact * self.clearance();
+            if touches && self.is_beside(neighbour) && self.could_replace(neighbour) {
                 let way = self.site.distance(neighbour.position(), goal);
                 let is_return = match self.exchanges_with(neighbour.id()) {
                     0 => false,
@@ -151,12 +155,14 @@ impl Robot {
             self.task_position(task)
                 .is_some_and(|place| distance_to(place) <= settings.arrival_radius())
         });
+        let keeps_link_to =
+            |node: &Neighbour| self.link_would_hold(self.position, node, parked.id());
         // Where the other stands for the parent itself, it does so beside this one then.
+        let parent = station.post.parent.and_then(|anchor| self.neighbour_at(anchor));
         let reaches_parent =
-            parked.beacon.parent == Some(self.id) || self.reaches_parent(station.post.parent);
-        let children_hold = self
-            .children_of(station.post.id)
-            .all(|child| self.walk_to(child) <= self.hard_length());
+            parked.beacon.parent == Some(self.id) || parent.is_some_and(keeps_link_to);
+        let mut children = self.children_of(station.post.id);
+        let children_hold = children.all(keeps_link_to);
         let makes_room = match self.is_of_team(parked) {
             true => stands_behind(self.team.as_ref(), parked.beacon.team.as_ref()),
             false => parked.beacon.parked,
@@ -171,13 +177,31 @@ impl Robot {
             && children_hold
     }
 
-    /// Whether the links of this robot would hold if `parked` took its duty.
-    fn could_be_replaced_by(&self, parked: &Neighbour) -> bool {
-        self.tree_links().iter().all(|link| {
-            self.neighbour(link.to).is_some_and(|other| {
-                self.site.walk(parked.position(), other.position()) <= self.hard_length()
-            })
+    /// Whether the links of this robot would hold if its partner took its duty.
+    fn could_be_replaced_by(&self, partner: &Neighbour) -> bool {
+        let links = self.tree_links();
+        let mut others = links.iter().map(|link| link.to).filter(|&other| other != partner.id());
+        others.all(|other| {
+            let other = self.neighbour(other);
+            other.is_some_and(|it| self.link_would_hold(partner.position(), it, partner.id()))
         })
+    }
+
+    /// Whether a link of the tree to this node would hold from `place` after this robot and `partner` have exchanged
+    /// duties. The node may exchange its own in the same instant, with any robot beside it; one that is not heard
+    /// here stands as far away from it as partners may.
+    fn link_would_hold(&self, place: Point, node: &Neighbour, partner: NodeId) -> bool {
+        let (longest, beside) = (self.hard_length(), WEDGE * self.clearance());
+        let walk = |other: &Neighbour| self.site.walk(place, other.position());
+        if node.is_access_point() || node.id() == partner {
+            return walk(node) <= longest;
+        }
+        let mut heard = self.neighbours.iter().filter(|other| {
+            let distance = (other.position() - node.position()).norm();
+            distance <= beside && !other.is_access_point() && other.id() != partner
+        });
+        let hears_all = self.site.is_in_range(node.distance + beside);
+        heard.all(|other| walk(other) <= longest) && (hears_all || walk(node) + beside <= longest)
     }
 
     // ---- What the guards ask -----------------------------------------------------------------
@@ -227,16 +251,16 @@ impl Robot {
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
             && self.offer_to_answer().is_none_or(|(mover, offer)| {
+                let is_partner = |it| self.is_beside(it) && self.could_be_replaced_by(it);
                 !self.has_refused_in_vain(mover, offer)
-                    && self.is_beside(mover)
+                    && self.neighbour(mover).is_some_and(is_partner)
                     && self.pursues_the_same(mover, offer)
             })
     }
 
-    /// Whether it is still as near to the mover as partners are: it may have moved since that has made its offer.
-    fn is_beside(&self, mover: NodeId) -> bool {
-        let most = WEDGE * self.clearance();
-        self.neighbour(mover).is_some_and(|mover| self.site.may_touch(mover.distance, most))
+    /// Whether it is as near to the other one as partners are, with no wall between them.
+    fn is_beside(&self, other: &Neighbour) -> bool {
+        self.site.may_touch(self.walk_to(other), WEDGE * self.clearance())
     }
 
     /// Whether the mover goes by the same announcement, and the same Σ if one of the duties that they

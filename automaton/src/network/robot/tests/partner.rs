@@ -209,6 +209,98 @@ fn links_of_both_hold_when_they_have_exchanged() {
     assert_eq!(orphan(Some(0)), Some(1), "the mover stands for it, and the other will");
 }
 
+/// Robot 3 may exchange duties with the mover's parent in the same instant: then it stands for the parent.
+#[test]
+fn links_hold_if_others_exchange_duties_in_the_same_instant() {
+    let hard = robot().hard_length();
+    let diagonal = |away: f64| (away * away - BESIDE * BESIDE).sqrt();
+    let with = |beyond: f64, post: Post| {
+        let mut robot = robot();
+        robot.holds(primary(30, None, 13));
+        robot.advances_to(east(3.0));
+        robot.still_periods = 5;
+        let parent = diagonal(hard) - 0.1;
+        robot.hears(beacon(5, north(parent), fixed(13, 14), &[13, 14]));
+        robot.hears(parked(BESIDE));
+        robot.hears(beacon(3, north(parent + beyond), post, &[]));
+        partner(&mut robot)
+    };
+    let other = redundant(12, 14);
+    assert_eq!(with(0.1 - LITTLE, other), Some(1));
+    assert_eq!(with(0.1 + LITTLE, other), None, "robot 3 would be out of reach");
+    let apart = 4.0 * CLEARANCE;
+    assert_eq!(with(apart + LITTLE, other), Some(1), "it stands too far from the parent for that");
+    assert_eq!(with(apart - LITTLE, other), None);
+}
+
+/// So near to the end of the radio's range that a robot beside its parent may be out of range.
+#[test]
+fn links_hold_if_one_that_is_not_heard_exchanges_duties_in_the_same_instant() {
+    let (range, apart) = (2.0, 4.0 * CLEARANCE);
+    let mut scenario = hall();
+    scenario.control.tree_reliability = Some(0.01);
+    let relay =
+        |parent: f64| (Anchor::Post(PostId(13)), beacon(5, west(parent), fixed(13, 14), &[13, 14]));
+    let access = |parent: f64| (Anchor::Access(0), access_point(west(parent)));
+    let attached_to = |(anchor, parent): (Anchor, Beacon)| {
+        let attached = |post: Post| Post { parent: Some(anchor), ..post };
+        let mut robot = robot_of(&scenario);
+        robot.stretched = true;
+        robot.holds(attached(primary(30, None, 13)));
+        robot.advances_to(east(3.0));
+        robot.still_periods = 5;
+        robot.hears(parent);
+        robot.hears(beacon(1, east(BESIDE), attached(redundant(11, 13)), &[11]));
+        assert!(range - apart + BESIDE < robot.hard_length());
+        partner(&mut robot)
+    };
+    assert_eq!(attached_to(relay(range - apart - LITTLE)), Some(1));
+    assert_eq!(attached_to(relay(range - apart + LITTLE)), None);
+    let found = attached_to(access(range - apart + LITTLE));
+    assert_eq!(found, Some(1), "access points exchange nothing");
+}
+
+/// The mover need not hear all that are attached to it.
+#[test]
+fn a_parked_robot_makes_room_only_where_its_own_links_hold() {
+    let hard = robot().hard_length();
+    let relieved = |child: f64| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        robot.knows_task(east(3.0));
+        let duty = holding(primary(30, None, 13), west(BESIDE));
+        let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
+        mover.offer = Some(Offer { to: 0, number: 1, duty });
+        mover.announced = robot.announced.clone();
+        robot.hears(mover);
+        robot.hears(Beacon {
+            parent: Some(0),
+            ..beacon(2, east(child - BESIDE), fixed(21, 20), &[21, 20, 13])
+        });
+        robot.may_be_relieved()
+    };
+    assert!(relieved(hard - LITTLE) && !relieved(hard + LITTLE));
+}
+
+/// The way round a wall is longer than partners are apart.
+#[test]
+fn no_robots_exchange_duties_through_a_wall() {
+    let finds = |walls: Vec<Vec<[f64; 2]>>| {
+        let mut scenario = hall();
+        scenario.workspace.holes.extend(walls);
+        let mut robot = robot_of(&scenario);
+        robot.holds(primary(30, None, 13));
+        robot.advances_to(east(3.0));
+        robot.still_periods = 10;
+        robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+        robot.hears(beacon(1, east(3.5 * CLEARANCE), redundant(11, 13), &[11, 13, 14]));
+        partner(&mut robot)
+    };
+    let (left, right) = (HERE.x + 1.7 * CLEARANCE, HERE.x + 1.8 * CLEARANCE);
+    let wall = vec![[left, 4.0], [right, 4.0], [right, 6.0], [left, 6.0]];
+    assert_eq!((finds(vec![]), finds(vec![wall])), (Some(1), None));
+}
+
 #[test]
 fn only_robots_on_a_way_hand_their_duty_over() {
     let mut posted = stuck(5);
