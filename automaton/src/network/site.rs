@@ -279,11 +279,6 @@ impl Site {
         self.is_graph() || distance <= contact
     }
 
-    /// Whether robots hear each other at this distance.
-    pub fn is_in_range(&self, distance: f64) -> bool {
-        self.is_graph() || distance < self.radio.range()
-    }
-
     /// Whether two robots could come into contact in this control period that were this far apart when one
     /// of them was heard last, so many periods ago.
     pub fn could_meet(&self, distance: f64, periods: u32) -> bool {

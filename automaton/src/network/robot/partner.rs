@@ -79,8 +79,7 @@ impl Robot {
         let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
         for neighbour in self.neighbours.iter() {
-            let touches = neighbour.distance <= contact * self.clearance();
-            if touches && self.is_beside(neighbour) && self.could_replace(neighbour) {
+            if neighbour.distance <= contact * self.clearance() && self.could_replace(neighbour) {
                 let way = self.site.distance(neighbour.position(), goal);
                 let is_return = match self.exchanges_with(neighbour.id()) {
                     0 => false,
@@ -155,8 +154,7 @@ impl Robot {
             self.task_position(task)
                 .is_some_and(|place| distance_to(place) <= settings.arrival_radius())
         });
-        let keeps_link_to =
-            |node: &Neighbour| self.link_would_hold(self.position, node, parked.id());
+        let keeps_link_to = |node: &Neighbour| self.link_would_hold(self.position, node);
         // Where the other stands for the parent itself, it does so beside this one then.
         let parent = station.post.parent.and_then(|anchor| self.neighbour_at(anchor));
         let reaches_parent =
@@ -179,29 +177,24 @@ impl Robot {
 
     /// Whether the links of this robot would hold if its partner took its duty.
     fn could_be_replaced_by(&self, partner: &Neighbour) -> bool {
-        let links = self.tree_links();
-        let mut others = links.iter().map(|link| link.to).filter(|&other| other != partner.id());
-        others.all(|other| {
-            let other = self.neighbour(other);
-            other.is_some_and(|it| self.link_would_hold(partner.position(), it, partner.id()))
+        self.tree_links().iter().all(|link| {
+            let other = self.neighbour(link.to);
+            other.is_some_and(|other| self.link_would_hold(partner.position(), other))
         })
     }
 
-    /// Whether a link of the tree to this node would hold from `place` after this robot and `partner` have exchanged
-    /// duties. The node may exchange its own in the same instant, with any robot beside it; one that is not heard
-    /// here stands as far away from it as partners may.
-    fn link_would_hold(&self, place: Point, node: &Neighbour, partner: NodeId) -> bool {
-        let (longest, beside) = (self.hard_length(), WEDGE * self.clearance());
-        let walk = |other: &Neighbour| self.site.walk(place, other.position());
-        if node.is_access_point() || node.id() == partner {
-            return walk(node) <= longest;
-        }
-        let mut heard = self.neighbours.iter().filter(|other| {
-            let distance = (other.position() - node.position()).norm();
-            distance <= beside && !other.is_access_point() && other.id() != partner
-        });
-        let hears_all = self.site.is_in_range(node.distance + beside);
-        heard.all(|other| walk(other) <= longest) && (hears_all || walk(node) + beside <= longest)
+    /// Whether a link of the tree from `place` to this node would hold even if that exchanged its duty in the same instant
+    /// with a robot beside it. Where this robot does not hear one that does, that one's partner hears who comes to
+    /// `place`, which the link reaches, and sees to the same.
+    fn link_would_hold(&self, place: Point, node: &Neighbour) -> bool {
+        let beside = WEDGE * self.clearance();
+        let reaches =
+            |other: &Neighbour| self.site.walk(place, other.position()) <= self.hard_length();
+        let may_stand_for_it = |other: &&Neighbour| {
+            !other.is_access_point() && (other.position() - node.position()).norm() <= beside
+        };
+        let mut others = self.neighbours.iter().filter(may_stand_for_it);
+        reaches(node) && (node.is_access_point() || others.all(reaches))
     }
 
     // ---- What the guards ask -----------------------------------------------------------------
@@ -258,9 +251,9 @@ impl Robot {
             })
     }
 
-    /// Whether it is as near to the other one as partners are, with no wall between them.
-    fn is_beside(&self, other: &Neighbour) -> bool {
-        self.site.may_touch(self.walk_to(other), WEDGE * self.clearance())
+    /// Whether it is still as near to the mover as partners are: it may have moved since that has made its offer.
+    fn is_beside(&self, mover: &Neighbour) -> bool {
+        self.site.may_touch(mover.distance, WEDGE * self.clearance())
     }
 
     /// Whether the mover goes by the same announcement, and the same Σ if one of the duties that they

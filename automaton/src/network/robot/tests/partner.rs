@@ -233,33 +233,6 @@ fn links_hold_if_others_exchange_duties_in_the_same_instant() {
     assert_eq!(with(apart - LITTLE, other), None);
 }
 
-/// So near to the end of the radio's range that a robot beside its parent may be out of range.
-#[test]
-fn links_hold_if_one_that_is_not_heard_exchanges_duties_in_the_same_instant() {
-    let (range, apart) = (2.0, 4.0 * CLEARANCE);
-    let mut scenario = hall();
-    scenario.control.tree_reliability = Some(0.01);
-    let relay =
-        |parent: f64| (Anchor::Post(PostId(13)), beacon(5, west(parent), fixed(13, 14), &[13, 14]));
-    let access = |parent: f64| (Anchor::Access(0), access_point(west(parent)));
-    let attached_to = |(anchor, parent): (Anchor, Beacon)| {
-        let attached = |post: Post| Post { parent: Some(anchor), ..post };
-        let mut robot = robot_of(&scenario);
-        robot.stretched = true;
-        robot.holds(attached(primary(30, None, 13)));
-        robot.advances_to(east(3.0));
-        robot.still_periods = 5;
-        robot.hears(parent);
-        robot.hears(beacon(1, east(BESIDE), attached(redundant(11, 13)), &[11]));
-        assert!(range - apart + BESIDE < robot.hard_length());
-        partner(&mut robot)
-    };
-    assert_eq!(attached_to(relay(range - apart - LITTLE)), Some(1));
-    assert_eq!(attached_to(relay(range - apart + LITTLE)), None);
-    let found = attached_to(access(range - apart + LITTLE));
-    assert_eq!(found, Some(1), "access points exchange nothing");
-}
-
 /// The mover need not hear all that are attached to it.
 #[test]
 fn a_parked_robot_makes_room_only_where_its_own_links_hold() {
@@ -280,25 +253,6 @@ fn a_parked_robot_makes_room_only_where_its_own_links_hold() {
         robot.may_be_relieved()
     };
     assert!(relieved(hard - LITTLE) && !relieved(hard + LITTLE));
-}
-
-/// The way round a wall is longer than partners are apart.
-#[test]
-fn no_robots_exchange_duties_through_a_wall() {
-    let finds = |walls: Vec<Vec<[f64; 2]>>| {
-        let mut scenario = hall();
-        scenario.workspace.holes.extend(walls);
-        let mut robot = robot_of(&scenario);
-        robot.holds(primary(30, None, 13));
-        robot.advances_to(east(3.0));
-        robot.still_periods = 10;
-        robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
-        robot.hears(beacon(1, east(3.5 * CLEARANCE), redundant(11, 13), &[11, 13, 14]));
-        partner(&mut robot)
-    };
-    let (left, right) = (HERE.x + 1.7 * CLEARANCE, HERE.x + 1.8 * CLEARANCE);
-    let wall = vec![[left, 4.0], [right, 4.0], [right, 6.0], [left, 6.0]];
-    assert_eq!((finds(vec![]), finds(vec![wall])), (Some(1), None));
 }
 
 #[test]
