@@ -7,6 +7,7 @@ mod eager;
 mod elections;
 mod errands;
 mod errors;
+mod exchanges;
 pub(super) mod flows;
 mod hearing;
 mod lemmas;
