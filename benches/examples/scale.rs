@@ -12,8 +12,13 @@ use std::process::ExitCode;
 use std::time::Instant;
 use std::{env, fs};
 
+use mimalloc::MiMalloc;
 use pleach_benches::course::Course;
 use pleach_benches::hall::hall;
+
+/// As in the command-line program.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 const SIZES: [usize; 3] = [100, 1_000, 10_000];
 /// Control periods that count, after those in which the network gathers and its routes come to rest.
