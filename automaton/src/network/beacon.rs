@@ -122,7 +122,7 @@ pub struct TeamReport {
     pub remaining: f64,
     /// How many members there are from the leader back to the sender.
     pub members: u32,
-    /// Whether a member hears a node of another tree over which its way to an access point would be shorter.
+    /// Whether a member could be attached to another tree: over a shorter way or, once links are stretched, over any.
     pub near_other_tree: bool,
 }
 

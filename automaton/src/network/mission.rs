@@ -63,7 +63,7 @@ pub struct Standstill {
     pub remaining: f64,
     /// A member whose links carry no more.
     pub saturated: Option<NodeId>,
-    /// Whether a member hears a node of another tree to which it could be attached on a shorter way.
+    /// Whether a member could be attached to another tree: over a shorter way or, once links are stretched, over any.
     pub near_other_tree: bool,
 }
 

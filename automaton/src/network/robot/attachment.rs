@@ -242,20 +242,33 @@ impl Robot {
 
     /// The node of the tree of another access point, within d_build, over which the way from its post is shortest, if it
     /// is shorter than its own; no redundant robot, which may be recruited.
-    pub(super) fn node_of_other_tree(&self) -> Option<Anchor> {
-        let (own, way) = (self.duty.post()?.id, self.lineage()?);
-        let nodes = self.neighbours.iter().filter_map(|node| {
-            let other = node.beacon.lineage.as_ref()?;
-            let is_shorter = other.root() != way.root()
-                && other.hops() + 1 < way.hops()
-                && !other.contains(own)
+    fn node_of_other_tree(&self) -> Option<Anchor> {
+        let hops = self.lineage()?.hops();
+        let nodes = self.nodes_of_other_trees().filter(|&(other, _)| other + 1 < hops);
+        nodes.min_by_key(|&(hops, _)| hops).map(|(_, anchor)| anchor)
+    }
+
+    /// Whether it could be attached to another tree: over a shorter way or, once links may be as long as they ever are,
+    /// over any.
+    pub(super) fn is_near_other_tree(&self) -> bool {
+        self.node_of_other_tree().is_some()
+            || self.stretched && self.nodes_of_other_trees().next().is_some()
+    }
+
+    /// The nodes of the trees of other access points to which its post could be attached, each with how many links it is
+    /// away from its access point.
+    fn nodes_of_other_trees(&self) -> impl Iterator<Item = (usize, Anchor)> {
+        let own = self.duty.post().map(|post| post.id).zip(self.lineage());
+        self.neighbours.iter().filter_map(move |node| {
+            let ((post, way), other) = (own?, node.beacon.lineage.as_ref()?);
+            let may_attach = other.root() != way.root()
+                && !other.contains(post)
                 && self.confirms(other)
                 && self.may_attach_to(node)
                 && node.post().is_none_or(Post::is_fixed)
                 && self.may_link(node);
-            self.anchor_of(node).filter(|_| is_shorter).map(|anchor| (other.hops(), anchor))
-        });
-        nodes.min_by_key(|&(hops, _)| hops).map(|(_, anchor)| anchor)
+            self.anchor_of(node).filter(|_| may_attach).map(|anchor| (other.hops(), anchor))
+        })
     }
 
     fn choose_parent(&self) -> Option<Option<Anchor>> {

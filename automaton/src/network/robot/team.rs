@@ -232,7 +232,7 @@ impl Robot {
         let own_slack = (self.is_slack() || self.is_near_enough()).then_some(self.id);
         let own_saturated = self.is_saturated().then_some(self.id);
         let still = self.still_periods;
-        let near_other_tree = self.is_eager() && self.node_of_other_tree().is_some();
+        let near_other_tree = self.is_eager() && self.is_near_other_tree();
         self.team = match self.duty.post().map(|post| post.kind) {
             Some(PostKind::Primary { follows: Some(ahead) }) => {
                 self.holder(ahead).and_then(|n| n.beacon.team).map(|front| TeamReport {

@@ -111,6 +111,27 @@ fn a_fixed_post_is_attached_to_another_tree_where_its_way_is_shorter() {
     assert_eq!(finds(Strategy::Paper, &[40, 41], build - LITTLE), None);
 }
 
+/// A team that stands still tells of the other tree, so that its robots can come to the aid of those there.
+#[test]
+fn a_way_as_long_leads_to_another_tree_once_links_are_stretched() {
+    let is_near = |stretched: bool, root: usize| {
+        let mut robot = holder(Strategy::Eager);
+        robot.stretched = stretched;
+        let extended =
+            |way: Lineage, post: u32| way.extended_by(PostId(post)).expect("they differ");
+        let way = [42, 41, 40].into_iter().fold(Lineage::of_access_point(root), extended);
+        let node = beacon(4, east(0.5), fixed(40, 41), &[]);
+        [parent(), Beacon { lineage: Some(Arc::new(way)), ..node }]
+            .into_iter()
+            .for_each(|beacon| robot.hears(beacon));
+        robot.trace_lineage().expect("its automaton goes on");
+        robot.is_near_other_tree()
+    };
+    assert!(is_near(true, 1));
+    assert!(!is_near(false, 1), "links may become longer first");
+    assert!(!is_near(true, 0), "it is in this tree");
+}
+
 #[test]
 fn no_way_is_shortened_that_is_contradicted_or_while_a_path_is_sought() {
     let newer = beacon(2, west(0.8), fixed(14, 17), &[14, 17]);
