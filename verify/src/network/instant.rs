@@ -232,17 +232,20 @@ pub fn accounting(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation>
     Ok(())
 }
 
-/// [`Property::Residual`], from the routes; the smallest residual, for the summary. Until the first task is
-/// announced routes are being set up link by link, which takes several control periods where the way to an access
-/// point has more links than a period has rounds.
+/// Whether a task has been announced. Until then routes are being set up link by link, which takes several control
+/// periods where the way to an access point has more links than a period has rounds.
+fn has_begun(snapshot: &Snapshot) -> bool {
+    snapshot.task.is_some() || !snapshot.serviced.is_empty() || !snapshot.closed.is_empty()
+}
+
+/// [`Property::Residual`], from the routes, once the first task has been announced; the smallest residual, for the
+/// summary.
 ///
 /// # Errors
 ///
 /// The robot with the smallest residual, if that is below −c_min.
 pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>, Violation> {
-    let has_begun =
-        snapshot.task.is_some() || !snapshot.serviced.is_empty() || !snapshot.closed.is_empty();
-    if !has_begun {
+    if !has_begun(snapshot) {
         return Ok(None);
     }
     let residuals = link::residuals(&snapshot.routes, limits.rates());
@@ -262,7 +265,7 @@ pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>,
 /// # Errors
 ///
 /// The first robot from which no path leads to an access point, although it has packets to send: of its own, or of
-/// others.
+/// others. Until the first task is announced, robots that are not in the tree know no way yet.
 pub fn connectivity(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation> {
     let carries = snapshot.routes.iter().filter(|route| route.share * route.reliability > 0.0);
     let links: Vec<_> = carries.map(|route| (route.from, route.to)).collect();
@@ -271,7 +274,12 @@ pub fn connectivity(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violatio
     let sends_nothing = |robot: usize| {
         limits.rates()[robot] == 0.0 && links.iter().all(|&(_, receiver)| receiver != robot)
     };
-    let unconnected = |&robot: &usize| !connected[robot] && !sends_nothing(robot);
+    let mut knows_way = vec![has_begun(snapshot); limits.robots()];
+    for &(robot, _) in &snapshot.tree {
+        knows_way[robot] = true;
+    }
+    let unconnected =
+        |&robot: &usize| !connected[robot] && !sends_nothing(robot) && knows_way[robot];
     match (0..connected.len()).find(unconnected) {
         None => Ok(()),
         Some(robot) => Err(Instant::of(snapshot).violation(

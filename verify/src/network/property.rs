@@ -185,7 +185,8 @@ impl Property {
             }
             Property::Connectivity => {
                 "From every robot that has packets to send, of its own or of others, a path of links \
-                 with T·R > 0 leads to an access point."
+                 with T·R > 0 leads to an access point. Until the first task is announced, robots that \
+                 are not in the tree yet do not count."
             }
             Property::SingleParent => "Every robot of the tree has exactly one parent.",
             Property::RootedTree => {

@@ -213,6 +213,21 @@ fn a_flow_that_cannot_be_held_during_a_motion() {
     assert!(load(0.0, 0.492).is_ok());
 }
 
+/// A way with more links than a control period has rounds is not known at once.
+#[test]
+fn a_robot_that_knows_no_way_before_the_first_task_is_announced() {
+    let limits = super::Limits::of(&scenario());
+    let is_connected = |task: Option<usize>, is_in_tree: bool| {
+        let mut before = Snapshot { task, serviced: Vec::new(), ..snapshot(1) };
+        before.routes.retain(|route| route.from != 2);
+        before.tree.retain(|&(robot, _)| is_in_tree || robot != 2);
+        super::instant::connectivity(&before, &limits).is_ok()
+    };
+    assert!(is_connected(None, false));
+    assert!(!is_connected(None, true), "its parent tells it a way");
+    assert!(!is_connected(Some(1), false));
+}
+
 #[test]
 fn a_robot_whose_information_goes_in_a_circle() {
     // Robots 2 and 3 serve each other; what they receive they send, as the residuals show.
