@@ -254,6 +254,12 @@ pub const USES: &[Use] = &[
         "exploration/src/network/properties.rs",
         "tree::is_rooted(&parents(protocol, state))",
     ),
+    (
+        "connectivity",
+        INSTANT,
+        "verify/src/network/monitor.rs",
+        "instant::connectivity(snapshot, limits)",
+    ),
     ("locations", INSTANT, "verify/src/network/judge/mod.rs", "instant::locations(snapshot)"),
     ("parents_of", TREE, INSTANT, "tree::parents_of(&snapshot.tree, &mut parents)"),
     ("mark_connected", TREE, INSTANT, "tree::mark_connected(&links, &mut connected)"),
