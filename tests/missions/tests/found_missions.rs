@@ -1,4 +1,4 @@
-//! Missions that failed once, or do, found by random floor plans. Each file says what went wrong; every property is
+//! Missions that failed once, found by random floor plans. Each file says what went wrong; every property is
 //! monitored.
 
 use missions::{files, read};

@@ -79,9 +79,9 @@ fn complaints(seeds: impl IntoParallelIterator<Item = u64>) -> Vec<String> {
     seeds.into_par_iter().filter_map(|seed| complaint(&saturated(seed))).collect()
 }
 
-/// Each file says what went wrong in it once.
+/// Each file says what is special about it.
 #[test]
-fn what_failed_once_does_not_fail_again() {
+fn saturated_missions_that_failed_once_break_no_promise() {
     let wrong: Vec<_> = files("tests/scenarios/saturated")
         .into_iter()
         .filter_map(|it| complaint(&read(it)))

@@ -265,7 +265,7 @@ pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>,
 /// # Errors
 ///
 /// The first robot from which no path leads to an access point, although it has packets to send: of its own, or of
-/// others. Until the first task is announced, robots that are not in the tree know no way yet.
+/// others. Before the first task is announced only robots of the tree count.
 pub fn connectivity(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation> {
     let carries = snapshot.routes.iter().filter(|route| route.share * route.reliability > 0.0);
     let links: Vec<_> = carries.map(|route| (route.from, route.to)).collect();

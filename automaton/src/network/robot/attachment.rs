@@ -240,8 +240,8 @@ impl Robot {
         farthest.or_else(|| self.node_of_other_tree()).map(Some)
     }
 
-    /// The node of the tree of another access point, within d_build, over which the way from its post is shortest, if it
-    /// is shorter than its own; no redundant robot, which may be recruited.
+    /// The node of the tree of another access point over which the way from its post is shortest, if it is shorter than
+    /// its own.
     fn node_of_other_tree(&self) -> Option<Anchor> {
         let hops = self.lineage()?.hops();
         let nodes = self.nodes_of_other_trees().filter(|&(other, _)| other + 1 < hops);
@@ -255,8 +255,8 @@ impl Robot {
             || self.stretched && self.nodes_of_other_trees().next().is_some()
     }
 
-    /// The nodes of the trees of other access points to which its post could be attached, each with how many links it is
-    /// away from its access point.
+    /// The nodes of the trees of other access points, within d_build, to which its post could be attached, each with the
+    /// number of links to its access point. Redundant robots do not count: they may be recruited.
     fn nodes_of_other_trees(&self) -> impl Iterator<Item = (usize, Anchor)> {
         let own = self.duty.post().map(|post| post.id).zip(self.lineage());
         self.neighbours.iter().filter_map(move |node| {

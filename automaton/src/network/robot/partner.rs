@@ -12,8 +12,8 @@
 //! again if the mover comes back with its offer. A mover that cannot pass takes a partner that is somewhat
 //! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice.
 //!
-//! Each of the two sees to it that its own links of the tree hold from where the other one stands. Exchanges side by side
-//! do not know of each other: a link has to reach whoever may stand for the robot at its other end in the next moment.
+//! Each of the two checks that its own links of the tree hold from the place of the other one. Robots do not know of
+//! exchanges beside them: a link has to reach every robot that may take the duty at its other end in the same period.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
@@ -183,9 +183,9 @@ impl Robot {
         })
     }
 
-    /// Whether a link of the tree from `place` to this node would hold even if that exchanged its duty in the same instant
-    /// with a robot beside it. Where this robot does not hear one that does, that one's partner hears who comes to
-    /// `place`, which the link reaches, and sees to the same.
+    /// Whether a link of the tree from `place` to `node` would hold even if `node` exchanged duties in the same instant
+    /// with a robot beside it. If this robot does not hear that one, `node` hears the robot that comes to `place`, since
+    /// the link reaches it, and makes the same check.
     fn link_would_hold(&self, place: Point, node: &Neighbour) -> bool {
         let beside = WEDGE * self.clearance();
         let reaches =
