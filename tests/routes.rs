@@ -74,3 +74,22 @@ fn robots_find_the_routes_that_clarabel_finds_and_always_carry_their_rates() {
         }
     }
 }
+
+/// Two robots that need each other but little: one has a little more to send than the other.
+fn alike(more: f64) -> Scenario {
+    let mut scenario = scattered(0);
+    scenario.access_point[0].position = [1.2, 0.8];
+    scenario.robot =
+        vec![RobotStart::at([1.0, 1.0], 0.02 + more), RobotStart::at([1.4, 1.0], 0.02)];
+    scenario
+}
+
+/// However little goes over a link, it neither comes and goes nor keeps the others from coming to rest.
+#[test]
+fn routes_that_have_converged_change_no_more() {
+    for more in [1e-6, 1e-5, 2e-5, 3e-5, 1e-4, 1e-3] {
+        let snapshots = routes_of(&alike(more));
+        let [.., before, last] = &snapshots[..] else { panic!("{PERIODS} control periods") };
+        assert_eq!(before.multipliers, last.multipliers, "{more} more to send");
+    }
+}

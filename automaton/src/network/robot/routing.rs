@@ -11,7 +11,9 @@ use pleach_continuous::network::routing::adal::{
     AdalLink, AdalRobot, AdalSettings, NeighbourReport, Workspace,
 };
 use pleach_continuous::network::routing::dual::{DualState, LinkCurvature, dual_step, safe_step};
-use pleach_continuous::network::routing::local::{LinkOffer, local_minimiser, weight};
+use pleach_continuous::network::routing::local::{
+    LinkOffer, local_minimiser, positive_part, weight,
+};
 use pleach_continuous::network::routing::repair::{Share, meet_demand};
 use pleach_discrete::network::NodeId;
 
@@ -28,7 +30,8 @@ const LEAST_USEFUL_RELIABILITY: f64 = 0.3;
 /// Share of its time that a robot gives away before the sweep; the rest is kept for the sweep and
 /// for motion.
 const BUDGET: f64 = 0.9;
-/// Shares below this are not used.
+/// What is taken off every share that the routing method gives, so that one below it is not used. Shares grow from nothing:
+/// one that came and went whole would keep the iteration from coming to rest.
 const LEAST_SHARE: f64 = 1e-6;
 /// Residuals are sums of a few flows; this much of them is rounding.
 pub(super) const RESIDUAL_ROUNDING: f64 = 1e-9;
@@ -97,9 +100,9 @@ impl RouteLink {
         }
     }
 
-    /// A share that the routing method gives it, if it is used.
+    /// What is used of a share that the routing method gives it.
     fn usable(&self, share: f64) -> f64 {
-        if share < LEAST_SHARE || self.is_retiring { 0.0 } else { share }
+        if self.is_retiring { 0.0 } else { positive_part(share - LEAST_SHARE) }
     }
 }
 
