@@ -285,6 +285,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         last(Relay, On::Attached, Relay),
         last(Junction, On::Attached, Junction),
         later(Leaf, On::Attached, Leaf),
+        last(Bound, On::Attached, Bound),
         last(Leaf, On::Discharged, Relay),
         later(Following, On::Attached, Following),
         later(Leading, On::Attached, Leading),

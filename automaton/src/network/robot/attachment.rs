@@ -48,7 +48,7 @@ impl Robot {
             Activity::Following | Activity::Leading => {
                 self.replace_parent().or_else(|| self.reattach())
             }
-            Activity::Relay | Activity::Junction | Activity::Leaf => {
+            Activity::Relay | Activity::Junction | Activity::Leaf | Activity::Bound => {
                 self.replace_parent().or_else(|| self.shorten_way())
             }
             _ => None,
@@ -251,8 +251,9 @@ impl Robot {
     /// Whether it could be attached to another tree: over a shorter way or, once links may be as long as they ever are,
     /// over any.
     pub(super) fn is_near_other_tree(&self) -> bool {
+        let is_longest = self.stretched || !self.site.could_stretch();
         self.node_of_other_tree().is_some()
-            || self.stretched && self.nodes_of_other_trees().next().is_some()
+            || is_longest && self.nodes_of_other_trees().next().is_some()
     }
 
     /// The nodes of the trees of other access points, within d_build, to which its post could be attached, each with the

@@ -686,6 +686,7 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
         .carried_out(attached::<Relay>())
         .carried_out(attached::<Junction>())
         .carried_out(attached::<Leaf>())
+        .carried_out(attached::<Bound>())
         .carried_out(attached::<Following>())
         .carried_out(attached::<Leading>())
         .carried_out(Transfer::new(

@@ -12,8 +12,9 @@
 //! again if the mover comes back with its offer. A mover that cannot pass takes a partner that is somewhat
 //! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice.
 //!
-//! Each of the two checks that its own links of the tree hold from the place of the other one. Robots do not know of
-//! exchanges beside them: a link has to reach every robot that may take the duty at its other end in the same period.
+//! Each of the two checks that its own links of the tree hold from the place of the other one, and those of the other one,
+//! as far as it hears them, from its own. Robots do not know of exchanges beside them: a link has to reach every robot
+//! that may take the duty at its other end in the same period.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
@@ -183,6 +184,16 @@ impl Robot {
         })
     }
 
+    /// Whether the links of a mover would hold if this robot took its duty. It has chosen its partner by what it had heard
+    /// in the control period before.
+    fn could_take_links_of(&self, mover: &Neighbour) -> bool {
+        let is_attached = |node: &&Neighbour| node.beacon.parent == Some(mover.id());
+        let keeps_link_to = |node: &Neighbour| self.link_would_hold(self.position, node);
+        let parent = mover.beacon.parent.filter(|&parent| parent != self.id);
+        parent.is_none_or(|parent| self.neighbour(parent).is_some_and(keeps_link_to))
+            && self.neighbours.iter().filter(is_attached).all(keeps_link_to)
+    }
+
     /// Whether a link of the tree from `place` to `node` would hold even if `node` exchanged duties in the same instant
     /// with a robot beside it. If this robot does not hear that one, `node` hears the robot that comes to `place`, since
     /// the link reaches it, and makes the same check.
@@ -191,7 +202,9 @@ impl Robot {
         let reaches =
             |other: &Neighbour| self.site.walk(place, other.position()) <= self.hard_length();
         let may_stand_for_it = |other: &&Neighbour| {
-            !other.is_access_point() && (other.position() - node.position()).norm() <= beside
+            !other.is_access_point()
+                && !self.roll.absent.contains(other.id())
+                && (other.position() - node.position()).norm() <= beside
         };
         let mut others = self.neighbours.iter().filter(may_stand_for_it);
         reaches(node) && (node.is_access_point() || others.all(reaches))
@@ -244,7 +257,8 @@ impl Robot {
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
             && self.offer_to_answer().is_none_or(|(mover, offer)| {
-                let is_partner = |it| self.is_beside(it) && self.could_be_replaced_by(it);
+                let links_hold = |it| self.could_be_replaced_by(it) && self.could_take_links_of(it);
+                let is_partner = |it| self.is_beside(it) && links_hold(it);
                 !self.has_refused_in_vain(mover, offer)
                     && self.neighbour(mover).is_some_and(is_partner)
                     && self.pursues_the_same(mover, offer)

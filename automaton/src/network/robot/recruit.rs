@@ -151,8 +151,8 @@ impl Robot {
     /// Its task as it is announced again where no robot of its tree can come:
     ///
     /// - to the robots of the trees that have not been asked, if one of them is redundant;
-    /// - once more to all, if its team can be attached to another tree: most of its robots can come to the aid of one
-    ///   of those then;
+    /// - once more to all, if its team can be attached to another tree, and again once links are stretched: most of its
+    ///   robots can come to the aid of one of those then;
     /// - once more to all, if one is redundant, and they have been asked before links were stretched.
     pub(super) fn announcement_to_others(
         &self,
@@ -165,7 +165,7 @@ impl Robot {
         let others: IdSet =
             known.eligible.iter().filter(|&root| !have_been_asked.contains(&Some(root))).collect();
         let announced_to = |eligible: IdSet, again: bool| {
-            let (eligible, stretched) = (Arc::new(eligible), self.stretched);
+            let (eligible, stretched) = (Arc::new(eligible), known.stretched || self.stretched);
             Some(Announcement { eligible, again, stretched, ..known.clone() })
         };
         let is_any_disconnected = self.election.as_ref().is_some_and(|it| it.best().is_some());
@@ -173,10 +173,12 @@ impl Robot {
             return announced_to(others, known.again);
         }
         let all = || (0..self.site.access_points.len()).collect();
-        if !known.again && standstill.is_some_and(|team| team.near_other_tree) {
+        let since_stretched = self.stretched && !known.stretched;
+        let is_near_other_tree = standstill.is_some_and(|team| team.near_other_tree);
+        if is_near_other_tree && (!known.again || since_stretched) {
             return announced_to(all(), true);
         }
-        match is_any_disconnected && self.stretched && !known.stretched {
+        match is_any_disconnected && since_stretched {
             true => announced_to(all(), known.again),
             false => None,
         }

@@ -373,18 +373,20 @@ fn an_announcement_is_learnt_after_the_notices_by_it() {
 /// A team that stands near a node of another tree can be attached there, and most of its robots come to another's aid.
 #[test]
 fn where_no_robot_can_come_to_a_team_near_another_tree_all_are_asked_once_more() {
-    let asked = |near_other_tree: bool, again: bool| {
+    let asked = |near_other_tree: bool, again: bool, stretched: bool| {
         let mut robot = robot();
         robot.knows_task(east(3.0));
+        robot.stretched = stretched;
         let (id, known) = robot.announced.clone().expect("it knows the task");
         robot.announced = Some((id, Shared::new(Announcement { again, ..(*known).clone() })));
         let standstill = Standstill { remaining: 1.0, saturated: None, near_other_tree };
         let next = robot.announcement_to_others(Some(standstill));
         next.map(|next| (next.eligible.iter().collect::<Vec<_>>(), next.again))
     };
-    assert_eq!(asked(true, false), Some((vec![0], true)));
-    assert_eq!(asked(true, true), None, "that was done");
-    assert_eq!(asked(false, false), None);
+    assert_eq!(asked(true, false, false), Some((vec![0], true)));
+    assert_eq!(asked(true, true, false), None, "that was done");
+    assert_eq!(asked(true, true, true), Some((vec![0], true)), "links were shorter then");
+    assert_eq!(asked(false, false, true), None);
 }
 
 /// The leader may be in another tree by now than when its election was announced to the robots of some trees.

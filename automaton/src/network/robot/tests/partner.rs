@@ -255,6 +255,32 @@ fn a_parked_robot_makes_room_only_where_its_own_links_hold() {
     assert!(relieved(hard - LITTLE) && !relieved(hard + LITTLE));
 }
 
+/// The parent of the mover has gone on since that has chosen its partner, or is not heard from here; or a robot that is
+/// attached to the mover has gone.
+#[test]
+fn a_parked_robot_makes_room_only_where_it_reaches_what_the_mover_is_linked_to() {
+    let hard = robot().hard_length();
+    let relieved = |parent: Option<f64>, child: f64| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        robot.knows_task(east(3.0));
+        let duty = holding(primary(30, None, 13), west(BESIDE));
+        let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
+        mover.offer = Some(Offer { to: 0, number: 1, duty });
+        (mover.announced, mover.parent) = (robot.announced.clone(), Some(5));
+        robot.hears(mover);
+        if let Some(away) = parent {
+            robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
+        }
+        let child = beacon(2, west(child), primary(31, Some(30), 30), &[31, 30, 13]);
+        robot.hears(Beacon { parent: Some(1), ..child });
+        robot.may_be_relieved()
+    };
+    assert!(relieved(Some(hard - LITTLE), 0.5));
+    assert!(!relieved(Some(hard + LITTLE), 0.5) && !relieved(None, 0.5), "the parent");
+    assert!(!relieved(Some(0.5), hard + LITTLE), "the robot attached to it");
+}
+
 #[test]
 fn only_robots_on_a_way_hand_their_duty_over() {
     let mut posted = stuck(5);

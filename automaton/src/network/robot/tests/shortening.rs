@@ -1,7 +1,11 @@
 //! Ways of fixed posts that are made shorter, so that nodes on them become redundant.
 
+use pleach_discrete::network::Activity;
+
 use super::*;
-use crate::network::duty::Junction;
+use crate::located::Place as _;
+use crate::network::duty::{Bound, Junction};
+use crate::network::robot::duties::Label;
 use crate::network::scenario::Strategy;
 
 /// Robot 0 holds a fixed post that is attached to post 13, half a unit to the west.
@@ -111,9 +115,24 @@ fn a_fixed_post_is_attached_to_another_tree_where_its_way_is_shorter() {
     assert_eq!(finds(Strategy::Paper, &[40, 41], build - LITTLE), None);
 }
 
+/// It bears the branch of its team otherwise, as long as it is not relieved of its post.
+#[test]
+fn the_post_of_a_bound_leader_is_attached_past_its_parent_too() {
+    let mut robot = holder(Strategy::Eager);
+    let held = *robot.duty.held().expect("it holds a post");
+    robot.duty = Current::new(Duty::Bound(Bound(held)));
+    let heard = [parent(), grandparent(robot.build_length() - LITTLE)];
+    heard.into_iter().for_each(|beacon| robot.hears(beacon));
+    robot.trace_lineage().expect("its automaton goes on");
+    robot.keep_place().expect("its automaton goes on");
+    robot.measures();
+    robot.jump_duty(Label::Alone).expect("its automaton goes on");
+    assert_eq!((robot.anchor(), robot.duty.location()), (at(14), Activity::Bound));
+}
+
 /// A team that stands still tells of the other tree, so that its robots can come to the aid of those there.
 #[test]
-fn a_way_as_long_leads_to_another_tree_once_links_are_stretched() {
+fn any_other_tree_will_do_once_links_are_as_long_as_they_get() {
     let is_near = |stretched: bool, root: usize| {
         let mut robot = holder(Strategy::Eager);
         robot.stretched = stretched;
