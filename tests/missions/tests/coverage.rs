@@ -4,10 +4,12 @@
 //! `PLEACH_UPDATE_DOCS=1 cargo test -p missions --test it coverage` writes the page anew, after
 //! `PLEACH_UPDATE_DOCS=1 cargo test -p pleach-exploration --test it campaigns` has written what is explored.
 
-use crate::generated::{keep_up_to_date, read};
+use crate::generated::{self, keep_up_to_date};
 use crate::stressed::stressed_scenarios;
 use missions::floor_plans::Family;
-use missions::{Acts, Drawn, counted, shipped, shipped_mission, shipped_names, strategies, valid};
+use missions::{
+    Acts, Drawn, counted, files, read, shipped, shipped_mission, shipped_names, strategies, valid,
+};
 use pleach::automaton::Executor;
 use pleach::automaton::network::NamedRow;
 use pleach::automaton::network::scenario::RoutingMethod;
@@ -32,11 +34,6 @@ const REASONS: &[([&str; 4], &str)] = &[
     (
         ["exchange", "refusing", "refusal in vain", ""],
         "the mover stops before it hears that it is refused: a unit test takes it",
-    ),
-    (
-        ["exchange", "", "refuses", ""],
-        "the robot that is asked has children that would lose their link; taken by \
-         `explore -- thorough`",
     ),
     (["exchange", "", "refus", ""], "follows a refusal; taken by `explore -- thorough`"),
     (
@@ -91,7 +88,8 @@ fn in_random() -> Acts {
     in_each.reduce(Acts::default, Acts::and)
 }
 
-/// What acts in missions under stress, with routes by ADAL, with rates that links cannot carry, and without a task.
+/// What acts in missions under stress, with routes by ADAL, with rates that links cannot carry, and without a task, and
+/// in those that have failed once.
 fn in_special() -> Acts {
     let mut by_adal = shipped("study-2");
     by_adal.control.routing_method = Some(RoutingMethod::Adal);
@@ -99,8 +97,10 @@ fn in_special() -> Acts {
     laden.robot.iter_mut().for_each(|robot| robot.rate = 0.2);
     let mut idle = shipped("study-2");
     idle.task.clear();
-    let scenarios: Vec<_> = stressed_scenarios().chain([by_adal, laden, idle]).collect();
-    let in_each = scenarios.into_par_iter().map(|it| Acts::in_mission(&valid(it), &mut []).1);
+    let drafts = stressed_scenarios().chain([by_adal, laden, idle]).map(valid);
+    let found = files("tests/scenarios/found").into_iter().map(read);
+    let scenarios: Vec<_> = drafts.chain(found).collect();
+    let in_each = scenarios.into_par_iter().map(|it| Acts::in_mission(&it, &mut []).1);
     in_each.reduce(Acts::default, Acts::and)
 }
 
@@ -139,7 +139,7 @@ const HORIZON_OF_STORMS: f64 = 900.0;
 /// How many configurations the quick campaigns explore, and in how many of them each row is taken, as their own
 /// test keeps it.
 fn explored() -> (usize, BTreeMap<String, usize>) {
-    let kept = read("../../exploration/tests/rows.txt");
+    let kept = generated::read("../../exploration/tests/rows.txt");
     let rows = kept.lines().map(|line| {
         let (configurations, row) = line.split_once(' ').unwrap();
         (row.to_owned(), configurations.parse().unwrap())
@@ -162,7 +162,7 @@ fn every_row_is_taken_or_has_a_reason() {
         "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test -p missions --test it coverage -->\n\n\
          # Coverage of the tables by tests\n\n\
          In how many of the {} shipped scenarios, of {} other missions (random, under stress, at their \
-         limits), of {} storms, and of {configurations} configurations that are explored exhaustively some \
+         limits, those that have failed once), of {} storms, and of {configurations} configurations that are explored exhaustively some \
          node takes each row of its tables. The explorer stands for routes and motion: rows of the control \
          period are not taken there. For a row that none of them takes, the last column says why it is \
          there.\n",
@@ -227,9 +227,6 @@ const SAID: &[(&str, &str)] = &[
     ("shortage", ""),
     ("offer to exchange duties", ""),
     ("acceptance of an offer", ""),
-    (
-        "refusal of an offer",
-        "a robot that has restarted does not know the task; a test of the robot",
-    ),
+    ("refusal of an offer", ""),
     ("request to make way", ""),
 ];

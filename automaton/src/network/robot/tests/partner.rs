@@ -211,7 +211,7 @@ fn links_of_both_hold_when_they_have_exchanged() {
 
 /// Robot 3 may exchange duties with the mover's parent in the same instant: then it stands for the parent.
 #[test]
-fn links_hold_if_others_exchange_duties_in_the_same_instant() {
+fn no_partner_is_taken_if_a_robot_beside_the_parent_would_be_out_of_reach() {
     let hard = robot().hard_length();
     let diagonal = |away: f64| (away * away - BESIDE * BESIDE).sqrt();
     let with = |beyond: f64, post: Post| {
