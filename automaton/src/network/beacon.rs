@@ -86,7 +86,7 @@ pub struct Announcement {
     /// Whether the election is repeated among the robots of all access points, since a team that found no recruit can be
     /// attached to another tree.
     pub again: bool,
-    /// Whether links had been stretched when the election was repeated.
+    /// Whether links had been stretched when the election was repeated among the robots of all access points.
     pub stretched: bool,
 }
 
@@ -122,7 +122,8 @@ pub struct TeamReport {
     pub remaining: f64,
     /// How many members there are from the leader back to the sender.
     pub members: u32,
-    /// Whether a member could be attached to another tree: over a shorter way or, once links are stretched, over any.
+    /// Whether a member could be attached to another tree: over a shorter way or, once links are as long as they ever
+    /// are, over any.
     pub near_other_tree: bool,
 }
 

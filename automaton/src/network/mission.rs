@@ -63,7 +63,8 @@ pub struct Standstill {
     pub remaining: f64,
     /// A member whose links carry no more.
     pub saturated: Option<NodeId>,
-    /// Whether a member could be attached to another tree: over a shorter way or, once links are stretched, over any.
+    /// Whether a member could be attached to another tree: over a shorter way or, once links are as long
+    /// as they ever are, over any.
     pub near_other_tree: bool,
 }
 

@@ -285,7 +285,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         last(Relay, On::Attached, Relay),
         last(Junction, On::Attached, Junction),
         later(Leaf, On::Attached, Leaf),
-        last(Bound, On::Attached, Bound),
+        later(Bound, On::Attached, Bound),
         last(Leaf, On::Discharged, Relay),
         later(Following, On::Attached, Following),
         later(Leading, On::Attached, Leading),
@@ -320,7 +320,7 @@ mod tests {
     /// finds a better parent attaches to it before its post becomes fixed.
     #[test]
     fn rows_that_may_be_enabled_together_are_in_order() {
-        use Activity::{Following, Junction, Leading, Relay, Standby, Waiting};
+        use Activity::{Bound, Following, Junction, Leading, Relay, Standby, Waiting};
         use DutyEvent as On;
         let priority = |source, event| {
             let mut rows = DUTIES.enabled(source);
@@ -333,6 +333,7 @@ mod tests {
             (Relay, On::PathJoined, On::Retired),
             (Junction, On::PathJoined, On::Merged),
             (Leading, On::TaskReached, On::Attached),
+            (Bound, On::PathJoined, On::Attached),
             (Following, On::Settled, On::Attached),
         ] {
             assert!(

@@ -4,7 +4,7 @@
 //! from an access point and, among those, most reliable, over links no longer than d_build. It
 //! chooses from the lineages that its neighbours tell it. Primary posts keep their parents, but for
 //! that of p₁ (Remark 5.6), as long as a robot holds these. So do fixed posts in the paper's order;
-//! otherwise they may be attached farther up the same way.
+//! otherwise they may be attached farther up the same way, or to the tree of another access point.
 
 use std::collections::BTreeSet;
 

@@ -10,6 +10,7 @@ use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
 use super::Robot;
 use super::hearing::Neighbour;
+use super::motion::ROUNDING;
 use crate::network::duty::{Duty, Hop, Shifting};
 
 /// Control periods within which both robots of an exchange are heard with their new posts, while some messages
@@ -152,9 +153,18 @@ impl Robot {
         match self.anchor()? {
             Anchor::Access(access) => Some(self.site.robots + access),
             Anchor::Post(post) => {
-                self.holder(post).map(Neighbour::id).or_else(|| self.stand_in_for(post))
+                let holder = self.holder(post).filter(|holder| self.may_be_linked_to(holder));
+                holder.map(Neighbour::id).or_else(|| self.stand_in_for(post))
             }
         }
+    }
+
+    /// Whether there is a link of the tree to the holder of the post that its own is attached to. One that it has not been
+    /// linked to, and that it hears from farther away than links are long, may be out of range again in the next moment:
+    /// others have stopped or begun again meanwhile, and the robots between the two are gone.
+    fn may_be_linked_to(&self, holder: &Neighbour) -> bool {
+        let longest = (self.hard_length() + 2.0 * self.stray()) * (1.0 + ROUNDING);
+        self.parent == Some(holder.id()) || self.walk_to(holder) <= longest
     }
 
     /// The parent of the robot that has left `place`.

@@ -184,8 +184,8 @@ impl Robot {
         })
     }
 
-    /// Whether the links of a mover would hold if this robot took its duty. It has chosen its partner by what it had heard
-    /// in the control period before.
+    /// Whether the links of a mover would hold if this robot took its duty. The mover has chosen its partner by what it had
+    /// heard in an earlier control period.
     fn could_take_links_of(&self, mover: &Neighbour) -> bool {
         let is_attached = |node: &&Neighbour| node.beacon.parent == Some(mover.id());
         let keeps_link_to = |node: &Neighbour| self.link_would_hold(self.position, node);
@@ -195,7 +195,7 @@ impl Robot {
     }
 
     /// Whether a link of the tree from `place` to `node` would hold even if `node` exchanged duties in the same instant
-    /// with a robot beside it. If this robot does not hear that one, `node` hears the robot that comes to `place`, since
+    /// with a robot beside it; one that does not take part exchanges nothing. If this robot does not hear that one, `node` hears the robot that comes to `place`, since
     /// the link reaches it, and makes the same check.
     fn link_would_hold(&self, place: Point, node: &Neighbour) -> bool {
         let beside = WEDGE * self.clearance();

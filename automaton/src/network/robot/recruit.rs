@@ -151,8 +151,8 @@ impl Robot {
     /// Its task as it is announced again where no robot of its tree can come:
     ///
     /// - to the robots of the trees that have not been asked, if one of them is redundant;
-    /// - once more to all, if its team can be attached to another tree, and again once links are stretched: most of its
-    ///   robots can come to the aid of one of those then;
+    /// - once more to all, if its team can be attached to another tree, and again once links are stretched: a leader
+    ///   from that tree can recruit most of its robots then;
     /// - once more to all, if one is redundant, and they have been asked before links were stretched.
     pub(super) fn announcement_to_others(
         &self,
@@ -164,24 +164,19 @@ impl Robot {
         let have_been_asked = [own_root, self.led_from];
         let others: IdSet =
             known.eligible.iter().filter(|&root| !have_been_asked.contains(&Some(root))).collect();
-        let announced_to = |eligible: IdSet, again: bool| {
-            let (eligible, stretched) = (Arc::new(eligible), known.stretched || self.stretched);
-            Some(Announcement { eligible, again, stretched, ..known.clone() })
-        };
         let is_any_disconnected = self.election.as_ref().is_some_and(|it| it.best().is_some());
         if is_any_disconnected && others.len() < known.eligible.len() && !others.is_empty() {
-            return announced_to(others, known.again);
+            return Some(Announcement { eligible: Arc::new(others), ..known.clone() });
         }
-        let all = || (0..self.site.access_points.len()).collect();
         let since_stretched = self.stretched && !known.stretched;
         let is_near_other_tree = standstill.is_some_and(|team| team.near_other_tree);
-        if is_near_other_tree && (!known.again || since_stretched) {
-            return announced_to(all(), true);
-        }
-        match is_any_disconnected && since_stretched {
-            true => announced_to(all(), known.again),
-            false => None,
-        }
+        let aids_other_tree = is_near_other_tree && (!known.again || since_stretched);
+        (aids_other_tree || is_any_disconnected && since_stretched).then(|| Announcement {
+            eligible: Arc::new((0..self.site.access_points.len()).collect()),
+            again: known.again || aids_other_tree,
+            stretched: known.stretched || self.stretched,
+            ..known.clone()
+        })
     }
 
     fn standstill(&self) -> Option<Standstill> {

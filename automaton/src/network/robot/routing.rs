@@ -30,9 +30,9 @@ const LEAST_USEFUL_RELIABILITY: f64 = 0.3;
 /// Share of its time that a robot gives away before the sweep; the rest is kept for the sweep and
 /// for motion.
 const BUDGET: f64 = 0.9;
-/// What is taken off every share that the routing method gives, so that one below it is not used. Shares grow from nothing:
-/// one that came and went whole would keep the iteration from coming to rest.
-const LEAST_SHARE: f64 = 1e-6;
+/// What is taken off every share that the routing method gives, so that one below it is not used: a soft threshold. A hard
+/// one would let a share jump between nothing and this much, and the iteration would not come to rest.
+const SOFT_THRESHOLD: f64 = 1e-6;
 /// Residuals are sums of a few flows; this much of them is rounding.
 pub(super) const RESIDUAL_ROUNDING: f64 = 1e-9;
 
@@ -102,7 +102,7 @@ impl RouteLink {
 
     /// What is used of a share that the routing method gives it.
     fn usable(&self, share: f64) -> f64 {
-        if self.is_retiring { 0.0 } else { positive_part(share - LEAST_SHARE) }
+        if self.is_retiring { 0.0 } else { positive_part(share - SOFT_THRESHOLD) }
     }
 }
 

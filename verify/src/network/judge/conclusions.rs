@@ -13,7 +13,8 @@ use super::walk::Walk;
 use super::{Dispute, Scene, claims, posts, states, task_or_none};
 use crate::network::property::Property;
 
-/// Control periods for which a leader that awaits its release waits until nodes have had time to become redundant.
+/// Control periods for which a leader that awaits its release waits until nodes have had time to become redundant, while
+/// its post is not attached elsewhere.
 const RETIREMENT: usize = 3;
 
 /// Control periods after which the user has heard what all robots know: one until an access point has heard it of

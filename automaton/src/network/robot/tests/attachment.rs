@@ -264,6 +264,22 @@ fn nobody_stands_for_a_post_that_has_not_been_left() {
     assert_eq!(robot.named_parent(), None, "robot 4 holds post 13, and is not heard");
 }
 
+/// Robots between the two have stopped. The holder comes into range by chance, and may leave it again.
+#[test]
+fn the_holder_of_the_post_above_is_no_parent_where_no_link_reaches() {
+    let hard = robot().hard_length();
+    let parent = |away: f64, before: Option<NodeId>| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        robot.parent = before;
+        robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
+        robot.tree_parent()
+    };
+    assert_eq!(parent(hard - LITTLE, None), Some(5));
+    assert_eq!(parent(hard + LITTLE, None), None);
+    assert_eq!(parent(hard + LITTLE, Some(5)), Some(5), "there was a link before");
+}
+
 /// Robot 0 holds a fixed post whose parent, post 21, has had no holder for `periods` control periods.
 fn orphan(periods: u32, heard: Beacon) -> Option<Option<Anchor>> {
     let mut robot = robot();
@@ -290,6 +306,17 @@ fn a_fixed_post_changes_its_parent_when_that_has_had_no_holder_for_long() {
     assert_eq!(orphan(40, far(hard + LITTLE)), None);
     let team = beacon(1, east(0.5), primary(11, None, 13), &[11, 13]);
     assert_eq!(orphan(40, team), None);
+}
+
+#[test]
+fn a_bound_leader_whose_parent_is_gone_attaches_elsewhere() {
+    let mut robot = robot();
+    let held = Held { station: Station { post: fixed(20, 21), reference: HERE }, left: None };
+    robot.duty = Current::new(Duty::Bound(Bound(held)));
+    robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
+    (0..13).for_each(|_| robot.count_orphaned_periods());
+    robot.keep_place().expect("it goes on");
+    assert_eq!(robot.desired_parent, Some(at(11)));
 }
 
 /// Robot 0 holds a fixed post that is attached to access point 0, which has been silent for `periods` control

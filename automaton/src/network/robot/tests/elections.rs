@@ -409,6 +409,28 @@ fn who_has_been_asked_is_not_asked_again_because_the_team_is_in_another_tree() {
     assert_eq!((next(&[1], Some(1)), next(&[1], None)), (None, None));
 }
 
+/// Asking the others does not count as having asked all since links were stretched: the first tree has not been.
+#[test]
+fn all_are_asked_with_stretched_links_after_the_others_have_been() {
+    let mut hall = hall();
+    hall.access_point.push(AccessPoint { position: east(3.0).into() });
+    let mut robot = Robot { stretched: true, led_from: Some(0), ..robot_of(&hall) };
+    robot.knows_task(east(3.0));
+    let mut election = Election::new(robot.notice_id());
+    election.place(4, Some(Bid { rank: 0, merit: -1, economy: 0 }));
+    robot.election = Some(Arc::new(election));
+    let mut asked = Vec::new();
+    let (id, known) = robot.announced.clone().expect("it knows the task");
+    let mut known = Announcement { eligible: Arc::new((0..2).collect()), ..(*known).clone() };
+    while asked.len() < 9 {
+        robot.announced = Some((id, Shared::new(known)));
+        let Some(next) = robot.announcement_to_others(None) else { break };
+        asked.push((next.eligible.iter().collect::<Vec<_>>(), next.stretched));
+        known = next;
+    }
+    assert_eq!(asked, [(vec![1], false), (vec![0, 1], true), (vec![1], true)]);
+}
+
 /// What the leader does next is heard before every token is known where it is nearer than some of those who elect.
 #[test]
 fn a_robot_that_hears_of_the_leader_first_knows_in_whose_tree_that_was_elected() {

@@ -348,7 +348,7 @@ fn a_link_that_is_far_too_long_truly_gets_no_longer() {
         let mut robot = unsure();
         robot.holds(fixed(20, 13));
         robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
-        robot.remember_parent();
+        robot.parent = Some(5);
         robot.begin_negotiation();
         if other > 0.0 {
             robot.hear_proposal(5, Segment { from: west(length), to: west(length - other) }, None);

@@ -214,7 +214,7 @@ fn links_of_both_hold_when_they_have_exchanged() {
 fn no_partner_is_taken_if_a_robot_beside_the_parent_would_be_out_of_reach() {
     let hard = robot().hard_length();
     let diagonal = |away: f64| (away * away - BESIDE * BESIDE).sqrt();
-    let with = |beyond: f64, post: Post| {
+    let beside_parent = |beyond: f64, post: Post| {
         let mut robot = robot();
         robot.holds(primary(30, None, 13));
         robot.advances_to(east(3.0));
@@ -223,14 +223,19 @@ fn no_partner_is_taken_if_a_robot_beside_the_parent_would_be_out_of_reach() {
         robot.hears(beacon(5, north(parent), fixed(13, 14), &[13, 14]));
         robot.hears(parked(BESIDE));
         robot.hears(beacon(3, north(parent + beyond), post, &[]));
-        partner(&mut robot)
+        robot
     };
+    let with = |beyond: f64, post: Post| partner(&mut beside_parent(beyond, post));
     let other = redundant(12, 14);
     assert_eq!(with(0.1 - LITTLE, other), Some(1));
     assert_eq!(with(0.1 + LITTLE, other), None, "robot 3 would be out of reach");
     let apart = 4.0 * CLEARANCE;
     assert_eq!(with(apart + LITTLE, other), Some(1), "it stands too far from the parent for that");
     assert_eq!(with(apart - LITTLE, other), None);
+    let mut robot = beside_parent(0.1 + LITTLE, other);
+    let absent = Absent { suspended: [3].into_iter().collect(), ..Absent::default() };
+    robot.roll.absent = Arc::new(absent);
+    assert_eq!(partner(&mut robot), Some(1), "it takes no part");
 }
 
 /// The mover need not hear all that are attached to it.
@@ -255,30 +260,38 @@ fn a_parked_robot_makes_room_only_where_its_own_links_hold() {
     assert!(relieved(hard - LITTLE) && !relieved(hard + LITTLE));
 }
 
-/// The parent of the mover has gone on since that has chosen its partner, or is not heard from here; or a robot that is
-/// attached to the mover has gone.
+/// The mover's parent has gone on since the mover chose its partner, or is not heard from here; or a robot that is attached
+/// to the mover has gone on. Which other robots the mover hears does not matter.
 #[test]
 fn a_parked_robot_makes_room_only_where_it_reaches_what_the_mover_is_linked_to() {
     let hard = robot().hard_length();
-    let relieved = |parent: Option<f64>, child: f64| {
+    let relieved = |parent: Option<(NodeId, f64)>, child: f64, others: &[(NodeId, Point)]| {
         let mut robot = robot();
         robot.holds(fixed(20, 13));
         robot.knows_task(east(3.0));
         let duty = holding(primary(30, None, 13), west(BESIDE));
         let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
         mover.offer = Some(Offer { to: 0, number: 1, duty });
-        (mover.announced, mover.parent) = (robot.announced.clone(), Some(5));
+        mover.announced = robot.announced.clone();
+        mover.parent = Some(parent.map_or(5, |(parent, _)| parent));
         robot.hears(mover);
-        if let Some(away) = parent {
+        if let Some((5, away)) = parent {
             robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
         }
-        let child = beacon(2, west(child), primary(31, Some(30), 30), &[31, 30, 13]);
-        robot.hears(Beacon { parent: Some(1), ..child });
+        let attached = beacon(2, west(child), primary(31, Some(30), 30), &[31, 30, 13]);
+        robot.hears(Beacon { parent: Some(1), ..attached });
+        for &(other, place) in others {
+            robot.hears(beacon(other, place, redundant(40 + other as u32, 14), &[]));
+        }
         robot.may_be_relieved()
     };
-    assert!(relieved(Some(hard - LITTLE), 0.5));
-    assert!(!relieved(Some(hard + LITTLE), 0.5) && !relieved(None, 0.5), "the parent");
-    assert!(!relieved(Some(0.5), hard + LITTLE), "the robot attached to it");
+    assert!(relieved(Some((5, hard - LITTLE)), 0.5, &[]));
+    assert!(!relieved(Some((5, hard + LITTLE)), 0.5, &[]) && !relieved(None, 0.5, &[]));
+    assert!(!relieved(Some((5, 0.5)), hard + LITTLE, &[]), "the robot attached to it");
+    assert!(relieved(Some((0, 0.0)), 0.5, &[]), "it is attached to this robot");
+    assert!(relieved(Some((5, 0.5)), 0.5, &[(3, north(hard + LITTLE))]), "of no concern");
+    let beside = [(3, west(hard + LITTLE))];
+    assert!(!relieved(Some((5, hard - LITTLE)), 0.5, &beside), "it may stand for the parent");
 }
 
 #[test]

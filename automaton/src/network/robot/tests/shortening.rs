@@ -115,7 +115,7 @@ fn a_fixed_post_is_attached_to_another_tree_where_its_way_is_shorter() {
     assert_eq!(finds(Strategy::Paper, &[40, 41], build - LITTLE), None);
 }
 
-/// It bears the branch of its team otherwise, as long as it is not relieved of its post.
+/// Otherwise the relays before it, which bear nothing but its post, could not be recruited until it is released.
 #[test]
 fn the_post_of_a_bound_leader_is_attached_past_its_parent_too() {
     let mut robot = holder(Strategy::Eager);
@@ -133,8 +133,12 @@ fn the_post_of_a_bound_leader_is_attached_past_its_parent_too() {
 /// A team that stands still tells of the other tree, so that its robots can come to the aid of those there.
 #[test]
 fn any_other_tree_will_do_once_links_are_as_long_as_they_get() {
-    let is_near = |stretched: bool, root: usize| {
-        let mut robot = holder(Strategy::Eager);
+    let is_near = |stretched: bool, root: usize, most: Option<f64>| {
+        let mut hall = hall();
+        hall.control.strategy = Some(Strategy::Eager);
+        hall.control.tree_reliability = most;
+        let mut robot = robot_of(&hall);
+        robot.holds(fixed(30, 13));
         robot.stretched = stretched;
         let extended =
             |way: Lineage, post: u32| way.extended_by(PostId(post)).expect("they differ");
@@ -146,9 +150,10 @@ fn any_other_tree_will_do_once_links_are_as_long_as_they_get() {
         robot.trace_lineage().expect("its automaton goes on");
         robot.is_near_other_tree()
     };
-    assert!(is_near(true, 1));
-    assert!(!is_near(false, 1), "links may become longer first");
-    assert!(!is_near(true, 0), "it is in this tree");
+    assert!(is_near(true, 1, None));
+    assert!(!is_near(false, 1, None), "links may become longer first");
+    assert!(is_near(false, 1, Some(0.9)), "links become no longer");
+    assert!(!is_near(true, 0, None), "it is in this tree");
 }
 
 #[test]
