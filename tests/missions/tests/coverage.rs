@@ -97,9 +97,9 @@ fn in_special() -> Acts {
     laden.robot.iter_mut().for_each(|robot| robot.rate = 0.2);
     let mut idle = shipped("study-2");
     idle.task.clear();
-    let drafts = stressed_scenarios().chain([by_adal, laden, idle]).map(valid);
+    let set_up = stressed_scenarios().chain([by_adal, laden, idle]).map(valid);
     let found = files("tests/scenarios/found").into_iter().map(read);
-    let scenarios: Vec<_> = drafts.chain(found).collect();
+    let scenarios: Vec<_> = set_up.chain(found).collect();
     let in_each = scenarios.into_par_iter().map(|it| Acts::in_mission(&it, &mut []).1);
     in_each.reduce(Acts::default, Acts::and)
 }

@@ -2,13 +2,14 @@
 
 use pleach_continuous::network::LinkReliability as _;
 use pleach_continuous::network::routing::adal::NeighbourReport;
+use pleach_continuous::network::routing::dual::DualState;
 use pleach_discrete::network::reservation::Lease;
 
 use super::*;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 use crate::network::robot::reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
-use crate::network::robot::routing::RouteLink;
+use crate::network::robot::routing::{RouteLink, RoutingState};
 use crate::node::Destination;
 
 const LEASE: u32 = 8;
@@ -75,6 +76,21 @@ fn links_are_those_that_are_reliable_enough_or_of_the_tree() {
     assert_eq!(links(limit + 1e-3, true, 0.0), Some(false), "a link of the tree");
     assert_eq!(links(limit + 1e-3, false, 0.1), Some(true), "its flow has to end first");
     assert_eq!(links(2.0, false, 0.1), None, "no packets get there");
+}
+
+#[test]
+fn nothing_is_planned_over_a_link_that_is_retiring() {
+    let limit = robot().site.link.distance_at(0.3);
+    let planned = |away: f64| {
+        let mut robot = router();
+        robot.held_flow(5).flow = 0.1;
+        robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
+        robot.survey_links();
+        robot.routing = RoutingState::Dual(DualState::new(1.0));
+        robot.primal_step();
+        robot.links.iter().find(|link| link.to == 5).map(|link| link.share > 0.0)
+    };
+    assert_eq!((planned(limit - 1e-3), planned(limit + 1e-3)), (Some(true), Some(false)));
 }
 
 /// As long as nothing changes, a control period begins with the links of the one before.
