@@ -179,6 +179,16 @@ fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
     }
 }
 
+/// The robots between it and the holder of the post above have gone: the two hear each other now and then, from farther
+/// away than links are long.
+#[test]
+fn no_robot_is_linked_to_one_that_comes_into_range_by_chance() {
+    let scenario = in_papers_order("discs");
+    let storm = draw(Kind::Restart, 3, &scenario, 824.0);
+    let verdict = judged_run(&scenario, &storm, 1_000).expect("nodes go on");
+    assert_eq!(verdict.violations, []);
+}
+
 /// Missions, in the paper's order, in which a promise was broken before there was one rule each. Missions change with
 /// every rule, so that others decide some of them by now: unit tests of robots hold each rule.
 #[test]
