@@ -195,8 +195,8 @@ impl Robot {
     }
 
     /// Whether a link of the tree from `place` to `node` would hold even if `node` exchanged duties in the same instant
-    /// with a robot beside it; one that does not take part exchanges nothing. If this robot does not hear that one, `node` hears the robot that comes to `place`, since
-    /// the link reaches it, and makes the same check.
+    /// with a robot beside it; one that does not take part exchanges nothing. If this robot does not hear that one,
+    /// `node` hears the robot that comes to `place`, since the link reaches it, and makes the same check.
     fn link_would_hold(&self, place: Point, node: &Neighbour) -> bool {
         let beside = WEDGE * self.clearance();
         let reaches =
