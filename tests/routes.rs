@@ -78,7 +78,6 @@ fn robots_find_the_routes_that_clarabel_finds_and_always_carry_their_rates() {
 /// Two robots that need each other but little: one has a little more to send than the other.
 fn alike(more: f64) -> Scenario {
     let mut scenario = scattered(0);
-    scenario.access_point[0].position = [1.2, 0.8];
     scenario.robot =
         vec![RobotStart::at([1.0, 1.0], 0.02 + more), RobotStart::at([1.4, 1.0], 0.02)];
     scenario

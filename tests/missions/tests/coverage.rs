@@ -163,9 +163,9 @@ fn every_row_is_taken_or_has_a_reason() {
          # Coverage of the tables by tests\n\n\
          In how many of the {} shipped scenarios, of {} other missions (random, under stress, at their \
          limits, those that have failed once), of {} storms, and of {configurations} configurations that are \
-         explored exhaustively some node takes each row of its tables. The explorer stands for routes and motion: rows of the control \
-         period are not taken there. For a row that none of them takes, the last column says why it is \
-         there.\n",
+         explored exhaustively some node takes each row of its tables. The explorer stands for routes and \
+         motion: rows of the control period are not taken there. For a row that none of them takes, the \
+         last column says why it is there.\n",
         in_scenarios.missions, in_others.missions, in_storms.missions,
     );
     let (mut unexplained, mut used, mut title) = (Vec::new(), BTreeSet::new(), "");

@@ -171,21 +171,29 @@ fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
     for (name, kind, seed, duration) in
         [("corridor", Kind::Partition, 3, 496.0), ("discs", Kind::Radio, 2, 815.0)]
     {
-        let scenario = in_papers_order(name);
-        let storm = draw(kind, seed, &scenario, duration);
-        let verdict =
-            judged_run(&scenario, &storm, 650).expect("nodes go on whatever they receive");
+        let verdict = drawn_in_papers_order(name, kind, seed, duration, 650);
         assert_eq!(verdict.violations, [], "{name}, {}", kind.name());
     }
+}
+
+/// A shipped scenario in the paper's order, in a storm of this duration in seconds.
+fn drawn_in_papers_order(
+    name: &str,
+    kind: Kind,
+    seed: u64,
+    duration: f64,
+    periods: usize,
+) -> Verdict {
+    let scenario = in_papers_order(name);
+    let storm = draw(kind, seed, &scenario, duration);
+    judged_run(&scenario, &storm, periods).expect("nodes go on whatever they receive")
 }
 
 /// The robots between it and the holder of the post above have gone: the two hear each other now and then, from farther
 /// away than links are long.
 #[test]
 fn no_robot_is_linked_to_one_that_comes_into_range_by_chance() {
-    let scenario = in_papers_order("discs");
-    let storm = draw(Kind::Restart, 3, &scenario, 824.0);
-    let verdict = judged_run(&scenario, &storm, 1_000).expect("nodes go on");
+    let verdict = drawn_in_papers_order("discs", Kind::Restart, 3, 824.0, 1_000);
     assert_eq!(verdict.violations, []);
 }
 

@@ -279,8 +279,7 @@ impl Robot {
             let lineage = holder.beacon.lineage.as_ref()?;
             let usable = self.may_attach_to(holder)
                 && !lineage.contains(post.id)
-                && self.walk_to(holder)
-                    <= (self.hard_length() + 2.0 * self.stray()) * (1.0 + ROUNDING);
+                && self.walk_to(holder) <= self.longest_length() * (1.0 + ROUNDING);
             usable.then_some((lineage.hops(), anchor))
         });
         let best = |admits: &dyn Fn(&Neighbour) -> bool| self.best_parent(post.id, None, admits);

@@ -103,6 +103,11 @@ impl Robot {
         self.site.lengths(self.stretched).hard
     }
 
+    /// Up to which length a link of the tree may have got through errors, as far as both of its ends may stray.
+    pub(super) fn longest_length(&self) -> f64 {
+        self.hard_length() + 2.0 * self.stray()
+    }
+
     /// Whether a link of the tree from here to the holder of this parent would not be too long.
     pub(super) fn reaches_parent(&self, parent: Option<Anchor>) -> bool {
         let node = parent.and_then(|anchor| self.neighbour_at(anchor));
@@ -163,8 +168,8 @@ impl Robot {
     /// linked to, and that it hears from farther away than links are long, may be out of range again in the next moment:
     /// others have stopped or begun again meanwhile, and the robots between the two are gone.
     fn may_be_linked_to(&self, holder: &Neighbour) -> bool {
-        let longest = (self.hard_length() + 2.0 * self.stray()) * (1.0 + ROUNDING);
-        self.parent == Some(holder.id()) || self.walk_to(holder) <= longest
+        self.parent == Some(holder.id())
+            || self.walk_to(holder) <= self.longest_length() * (1.0 + ROUNDING)
     }
 
     /// The parent of the robot that has left `place`.

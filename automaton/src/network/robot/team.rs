@@ -271,7 +271,7 @@ impl Robot {
     pub(super) fn way_and_reach_left(&self) -> Option<(f64, f64)> {
         let parent = self.neighbour_at(self.anchor()?)?;
         let (target, members) = (self.target?, f64::from(self.team?.members));
-        let link = self.hard_length() + 2.0 * self.stray();
+        let link = self.longest_length();
         Some((self.site.distance(parent.position(), target), members * link + self.reach()))
     }
 

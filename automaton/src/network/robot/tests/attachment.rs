@@ -282,8 +282,14 @@ fn the_holder_of_the_post_above_is_no_parent_where_no_link_reaches() {
 
 /// Robot 0 holds a fixed post whose parent, post 21, has had no holder for `periods` control periods.
 fn orphan(periods: u32, heard: Beacon) -> Option<Option<Anchor>> {
+    orphan_with(|held| Duty::Relay(Relay(held)), periods, heard)
+}
+
+/// As [`orphan`], with this duty.
+fn orphan_with(duty: fn(Held) -> Duty, periods: u32, heard: Beacon) -> Option<Option<Anchor>> {
     let mut robot = robot();
-    robot.holds(fixed(20, 21));
+    let held = Held { station: Station { post: fixed(20, 21), reference: HERE }, left: None };
+    robot.duty = Current::new(duty(held));
     robot.hears(heard);
     (0..periods).for_each(|_| robot.count_orphaned_periods());
     robot.keep_place().expect("it goes on");
@@ -310,13 +316,8 @@ fn a_fixed_post_changes_its_parent_when_that_has_had_no_holder_for_long() {
 
 #[test]
 fn a_bound_leader_whose_parent_is_gone_attaches_elsewhere() {
-    let mut robot = robot();
-    let held = Held { station: Station { post: fixed(20, 21), reference: HERE }, left: None };
-    robot.duty = Current::new(Duty::Bound(Bound(held)));
-    robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
-    (0..13).for_each(|_| robot.count_orphaned_periods());
-    robot.keep_place().expect("it goes on");
-    assert_eq!(robot.desired_parent, Some(at(11)));
+    let other = beacon(1, east(0.5), fixed(11, 13), &[11, 13]);
+    assert_eq!(orphan_with(|held| Duty::Bound(Bound(held)), 13, other), Some(at(11)));
 }
 
 /// Robot 0 holds a fixed post that is attached to access point 0, which has been silent for `periods` control

@@ -238,18 +238,24 @@ fn no_partner_is_taken_if_a_robot_beside_the_parent_would_be_out_of_reach() {
     assert_eq!(partner(&mut robot), Some(1), "it takes no part");
 }
 
+/// Robot 0, parked at its post, and a mover beside it that offers it its duty, and that it has yet to hear.
+fn parked_and_mover() -> (Robot, Beacon) {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    robot.knows_task(east(3.0));
+    let duty = holding(primary(30, None, 13), west(BESIDE));
+    let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
+    mover.offer = Some(Offer { to: 0, number: 1, duty });
+    mover.announced = robot.announced.clone();
+    (robot, mover)
+}
+
 /// The mover need not hear all that are attached to it.
 #[test]
 fn a_parked_robot_makes_room_only_where_its_own_links_hold() {
     let hard = robot().hard_length();
     let relieved = |child: f64| {
-        let mut robot = robot();
-        robot.holds(fixed(20, 13));
-        robot.knows_task(east(3.0));
-        let duty = holding(primary(30, None, 13), west(BESIDE));
-        let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
-        mover.offer = Some(Offer { to: 0, number: 1, duty });
-        mover.announced = robot.announced.clone();
+        let (mut robot, mover) = parked_and_mover();
         robot.hears(mover);
         robot.hears(Beacon {
             parent: Some(0),
@@ -266,13 +272,7 @@ fn a_parked_robot_makes_room_only_where_its_own_links_hold() {
 fn a_parked_robot_makes_room_only_where_it_reaches_what_the_mover_is_linked_to() {
     let hard = robot().hard_length();
     let relieved = |parent: Option<(NodeId, f64)>, child: f64, others: &[(NodeId, Point)]| {
-        let mut robot = robot();
-        robot.holds(fixed(20, 13));
-        robot.knows_task(east(3.0));
-        let duty = holding(primary(30, None, 13), west(BESIDE));
-        let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
-        mover.offer = Some(Offer { to: 0, number: 1, duty });
-        mover.announced = robot.announced.clone();
+        let (mut robot, mut mover) = parked_and_mover();
         mover.parent = Some(parent.map_or(5, |(parent, _)| parent));
         robot.hears(mover);
         if let Some((5, away)) = parent {
@@ -412,13 +412,7 @@ fn a_member_that_stands_behind_is_a_partner() {
 #[test]
 fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
     let relieved = |change: &dyn Fn(&mut Robot, &mut Beacon)| {
-        let mut robot = robot();
-        robot.holds(fixed(20, 13));
-        robot.knows_task(east(3.0));
-        let duty = holding(primary(30, None, 13), west(BESIDE));
-        let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
-        mover.offer = Some(Offer { to: 0, number: 1, duty });
-        mover.announced = robot.announced.clone();
+        let (mut robot, mut mover) = parked_and_mover();
         change(&mut robot, &mut mover);
         robot.hears(mover);
         robot.may_be_relieved()
