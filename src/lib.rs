@@ -61,7 +61,7 @@
 //!
 //! ```
 //! use pleach::automaton::network::scenario::{
-//!     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+//!     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
 //!     WorkspaceOutline,
 //! };
 //!
@@ -75,6 +75,7 @@
 //!     },
 //!     link: LinkRanges::new(0.4, 0.5),
 //!     control: Control::default(),
+//!     mission: Agenda::default(),
 //!     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
 //!     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
 //!     task: vec![Task::at([0.9, 0.3])],
@@ -101,6 +102,7 @@
 //! #     },
 //! #     link: LinkRanges::new(0.4, 0.5),
 //! #     control: Control::default(),
+//! #     mission: Agenda::default(),
 //! #     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
 //! #     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
 //! #     task: vec![Task::at([0.9, 0.3])],

@@ -27,7 +27,7 @@
 mod line;
 
 use crate::automaton::network::record::{End, Faults, MissionEvent, Snapshot};
-use crate::automaton::network::scenario::{Scenario, Strategy};
+use crate::automaton::network::scenario::{Scenario, Strategy, Unreachable};
 use crate::mission::Watcher;
 use line::{EndLine, Line, LineOut, StepLine};
 use serde_json::{Map, Value};
@@ -184,8 +184,10 @@ fn entry(number: usize, line: Line) -> Result<TraceEntry, TraceError> {
 
 /// The scenario of a header as its mission was run. Headers state every default; but where the strategy was that of
 /// the paper, earlier builds left it out, as it was their default. In a scenario file it is `eager` that is left out.
+/// Headers without `[mission]` come from builds in which a task that no robot could service ended the mission.
 fn as_traced(mut scenario: Scenario) -> Scenario {
     scenario.control.strategy.get_or_insert(Strategy::Paper);
+    scenario.mission.unreachable.get_or_insert(Unreachable::End);
     scenario
 }
 

@@ -3,7 +3,8 @@
 use missions::{Arrival, Filtered, Mission, run, run_over, shipped, shipped_mission};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
-    AccessPoint, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+    AccessPoint, Agenda, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task,
+    WorkspaceOutline,
 };
 use pleach::continuous::Point;
 use std::path::Path;
@@ -29,6 +30,7 @@ fn room(task: [f64; 2]) -> Scenario {
             service_radius: Some(SERVICE_RADIUS),
             ..Control::default()
         },
+        mission: Agenda::default(),
         access_point: vec![AccessPoint { position: [0.3, 0.5] }],
         robot: places.map(|position| RobotStart::at(position, 0.075)).into(),
         task: vec![Task::at(task)],

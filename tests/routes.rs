@@ -7,7 +7,8 @@ use missions::{Filtered, network_over, run_unmonitored, valid};
 use pleach::automaton::network::Site;
 use pleach::automaton::network::record::Snapshot;
 use pleach::automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, RoutingMethod, Scenario, Task, WorkspaceOutline,
+    AccessPoint, Agenda, Control, LinkRanges, RobotStart, RoutingMethod, Scenario, Task,
+    WorkspaceOutline,
 };
 use std::f64::consts::TAU;
 
@@ -52,6 +53,7 @@ fn scattered(seed: u64) -> Scenario {
         },
         link: LinkRanges::new(0.3, 0.6),
         control: Control::default(),
+        mission: Agenda::default(),
         access_point: vec![AccessPoint { position: places[0] }],
         robot: robots.collect(),
         task: vec![Task::at([0.5, 0.5])],

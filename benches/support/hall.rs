@@ -5,7 +5,8 @@
 //! right wall an aisle is left empty, and the tasks lie there.
 
 use pleach::automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario, WorkspaceOutline,
+    AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+    WorkspaceOutline,
 };
 
 /// Distance between robots next to each other. With the range of 0.5 a robot hears the twelve
@@ -58,6 +59,7 @@ pub fn hall(robots: usize, tasks: usize) -> ValidScenario {
         },
         link: LinkRanges::new(0.4, 0.5),
         control: Control { routing_reserve: Some(RATE), ..Control::default() },
+        mission: Agenda::default(),
         access_point: corners
             .iter()
             .map(|&corner| AccessPoint { position: within(corner, ACCESS_POINT) })

@@ -4,7 +4,8 @@ use super::gaps;
 use super::{MapPlaces, Plan, bounds, counted, extent};
 use crate::automaton::network::Site;
 use crate::automaton::network::scenario::{
-    AccessPoint, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+    AccessPoint, Agenda, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Task,
+    ValidScenario,
 };
 use crate::continuous::Point;
 use crate::figures::quantity;
@@ -201,6 +202,7 @@ fn outline(plan: &Plan, choices: &Choices) -> Scenario {
         workspace: plan.workspace.clone(),
         link: LinkRanges::new(trimmed(full_range), trimmed(max_range)),
         control: Control { clearance: choices.clearance, ..Control::default() },
+        mission: Agenda::default(),
         access_point: Vec::new(),
         robot: Vec::new(),
         task: Vec::new(),

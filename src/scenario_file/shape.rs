@@ -3,7 +3,9 @@
 //! The shape is checked before the file becomes a scenario, so that every mistake is found in one
 //! reading, and each is told with what would be right.
 
-use crate::automaton::network::scenario::{CONTROL, KeyPath, LinkModel, MOST_PERIODS, Values};
+use crate::automaton::network::scenario::{
+    AGENDA, CONTROL, KeyPath, LinkModel, MOST_PERIODS, Values,
+};
 use toml::Spanned;
 use toml::de::{DeArray, DeFloat, DeInteger, DeTable, DeValue};
 
@@ -14,6 +16,8 @@ pub(super) enum Shape {
     Number,
     /// A whole number from the first to the second.
     Count(u64, u64),
+    /// A whole number of either sign, of 32 bits.
+    Integer,
     OneOf(&'static [&'static str]),
     Point,
     ListOf(&'static Shape),
@@ -57,6 +61,7 @@ pub(super) const SCENARIO: &[Entry] = &[
         ]),
     ),
     optional("control", Shape::Table(&CONTROL_ENTRIES)),
+    optional("mission", Shape::Table(&AGENDA_ENTRIES)),
     required("access_point", Shape::ListOf(&Shape::Table(&[required("position", Shape::Point)]))),
     required(
         "robot",
@@ -73,6 +78,7 @@ pub(super) const SCENARIO: &[Entry] = &[
             optional("announced", Shape::Count(0, MOST_PERIODS as u64)),
             optional("withdrawn", Shape::Count(1, MOST_PERIODS as u64)),
             optional("lasts", Shape::Count(1, MOST_PERIODS as u64)),
+            optional("priority", Shape::Integer),
             optional("access_point", ACCESS_POINT),
         ])),
     ),
@@ -92,6 +98,18 @@ const CONTROL_ENTRIES: [Entry; CONTROL.len()] = {
             _ => Shape::Number,
         };
         entries[row] = optional(CONTROL[row].name, shape);
+        row += 1;
+    }
+    entries
+};
+
+/// The keys of `[mission]`, each with its words.
+const AGENDA_ENTRIES: [Entry; AGENDA.len()] = {
+    let mut entries = [optional("", Shape::Number); AGENDA.len()];
+    let mut row = 0;
+    while row < AGENDA.len() {
+        let (name, words) = AGENDA[row];
+        entries[row] = optional(name, Shape::OneOf(words));
         row += 1;
     }
     entries
@@ -134,6 +152,8 @@ impl Comparison {
                 if whole(digits).is_some_and(|count| {
                     u64::try_from(count).is_ok_and(|count| count <= *most)
                 }) => {}
+            (DeValue::Integer(digits), Shape::Integer)
+                if whole(digits).is_some_and(|number| i32::try_from(number).is_ok()) => {}
             (DeValue::Float(_) | DeValue::Integer(_), Shape::Number) => {
                 let message = format!(
                     "{} is too large: numbers go up to {:e}; write whole numbers from {:e} on with a point or an exponent",
@@ -211,6 +231,7 @@ impl Shape {
             Shape::Text => "a text in quotation marks".into(),
             Shape::Number => "a number".into(),
             Shape::Count(least, most) => format!("a whole number from {least} to {most}"),
+            Shape::Integer => format!("a whole number from {} to {}", i32::MIN, i32::MAX),
             Shape::OneOf(choices) => {
                 let quoted: Vec<_> = choices.iter().map(|choice| format!("{choice:?}")).collect();
                 quoted.join(" or ")

@@ -5,6 +5,7 @@
 //! robots know; making one says everything that is wrong. What does not keep a mission from
 //! starting but may surprise, its [`Remark`]s tell.
 
+mod agenda;
 mod control;
 mod fault;
 mod fleet;
@@ -16,6 +17,7 @@ mod settings;
 mod valid;
 mod validation;
 
+pub use agenda::{AGENDA, Agenda, TaskOrder, Unreachable};
 pub use control::{
     CONTROL, Control, ControlKey, LARGEST_COORDINATE, MOST_PERIODS, MotionSolver, RoutingMethod,
     Strategy, Teams, Values,
@@ -47,6 +49,9 @@ pub struct Scenario {
     /// Settings of the control scheme.
     #[serde(default)]
     pub control: Control,
+    /// Which tasks are pursued, and in which order.
+    #[serde(default, skip_serializing_if = "Agenda::is_default")]
+    pub mission: Agenda,
     /// The fixed access points.
     #[serde(default)]
     pub access_point: Vec<AccessPoint>,
@@ -123,6 +128,9 @@ pub struct Task {
     /// For how many control periods, from its service on, it has to be serviced; not stated: for ever.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lasts: Option<u32>,
+    /// With `order = "priority"`, tasks of a higher priority come first; not stated: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub priority: Option<i32>,
     /// The number of the access point that it belongs to, where each has a team of its own; not stated: the nearest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub access_point: Option<usize>,
@@ -131,7 +139,14 @@ pub struct Task {
 impl Task {
     /// A task that is asked for from the beginning, and for ever.
     pub const fn at(position: [f64; 2]) -> Self {
-        Task { position, announced: None, withdrawn: None, lasts: None, access_point: None }
+        Task {
+            position,
+            announced: None,
+            withdrawn: None,
+            lasts: None,
+            priority: None,
+            access_point: None,
+        }
     }
 
     /// The same task, not stated to belong to an access point.

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use pleach_automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Settings, Strategy, Task,
+    AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Settings, Strategy, Task,
     WorkspaceOutline,
 };
 use pleach_automaton::network::site::Measure;
@@ -213,6 +213,7 @@ impl PlaceGraph {
                 strategy: Some(self.strategy),
                 ..Control::default()
             },
+            mission: Agenda::default(),
             access_point: (self.robots..self.nodes())
                 .map(|place| AccessPoint { position: at(place) })
                 .collect(),

@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-6;
 ///
 /// ```
 /// use pleach_automaton::network::scenario::{
-///     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario, WorkspaceOutline,
+///     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario, WorkspaceOutline,
 /// };
 /// use pleach_verify::network::Spans;
 ///
@@ -35,6 +35,7 @@ const ROUNDING: f64 = 1e-6;
 ///     },
 ///     link: LinkRanges::new(0.4, 0.5),
 ///     control: Control { tree_reliability: Some(0.5), ..Control::default() },
+///     mission: Agenda::default(),
 ///     access_point: vec![AccessPoint { position: [0.1, 0.1] }],
 ///     robot: vec![RobotStart::at([0.3, 0.1], 0.01)],
 ///     task: vec![Task::at([2.1, 0.1])],

@@ -26,7 +26,7 @@
 //! use nalgebra::point;
 //! use pleach_automaton::network::record::{Route, Snapshot};
 //! use pleach_automaton::network::scenario::{
-//!     AccessPoint, Control, LinkRanges, RobotStart, Scenario, ValidScenario, WorkspaceOutline,
+//!     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, ValidScenario, WorkspaceOutline,
 //! };
 //! use pleach_discrete::network::{Phase, Role};
 //! use pleach_verify::network::{Monitor, Property};
@@ -40,6 +40,7 @@
 //!     },
 //!     link: LinkRanges::new(0.4, 0.5),
 //!     control: Control::default(),
+//!     mission: Agenda::default(),
 //!     access_point: vec![AccessPoint { position: [0.5, 0.2] }],
 //!     robot: vec![RobotStart::at([0.5, 0.5], 0.075)],
 //!     task: Vec::new(),

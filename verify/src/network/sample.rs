@@ -7,7 +7,8 @@
 use nalgebra::point;
 use pleach_automaton::network::record::{PostView, Route, Snapshot};
 use pleach_automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario, WorkspaceOutline,
+    AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+    WorkspaceOutline,
 };
 use pleach_discrete::network::{Phase, Role};
 
@@ -36,6 +37,7 @@ pub(super) fn stated() -> Scenario {
         },
         link: LinkRanges::new(0.4, 0.5),
         control: Control::default(),
+        mission: Agenda::default(),
         access_point: vec![AccessPoint { position: [0.0, 0.0] }],
         robot: robots.into_iter().map(|position| RobotStart::at(position, RATE)).collect(),
         task: vec![Task::at([0.3, 0.02]), Task::at([1.5, 0.0])],

@@ -148,6 +148,7 @@ impl Part {
             workspace: whole.workspace.clone(),
             link: whole.link,
             control: Control { teams: None, ..whole.control },
+            mission: whole.mission,
             access_point: vec![whole.access_point[self.access_point]],
             robot: self.robots.iter().map(|&it| robot[it].of_nearest()).collect(),
             task: self.tasks.iter().map(|&it| task[it].of_nearest()).collect(),

@@ -2,11 +2,14 @@
 
 use pleach_continuous::geometry::Errors;
 
-use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario, Strategy, Teams};
+use super::{
+    Agenda, Control, LinkRanges, MotionSolver, RoutingMethod, Scenario, Strategy, TaskOrder, Teams,
+    Unreachable,
+};
 
 /// The settings of the control scheme, none of them left open.
 ///
-/// Each field is the key of the same name in [`Control`], or its default. Lengths are in the
+/// Each field is the key of the same name in [`Control`] or [`Agenda`], or its default. Lengths are in the
 /// scenario's unit, times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -46,6 +49,10 @@ pub struct Settings {
     pub strategy: Strategy,
     /// Which robots pursue tasks together.
     pub teams: Teams,
+    /// What a task that no robot can service means for the others.
+    pub unreachable: Unreachable,
+    /// Which of the tasks is announced next.
+    pub order: TaskOrder,
 }
 
 impl Settings {
@@ -77,7 +84,7 @@ impl Settings {
 
     /// The settings of `scenario`: what its `[control]` states, defaults for the rest.
     pub fn resolve(scenario: &Scenario) -> Self {
-        let &Scenario { link, control, .. } = scenario;
+        let &Scenario { link, control, mission, .. } = scenario;
         let tree_reliability = control.tree_reliability.unwrap_or(Self::TREE_RELIABILITY);
         let clearance =
             control.clearance.unwrap_or(link.full_range / Self::CLEARANCES_PER_FULL_RANGE);
@@ -110,6 +117,8 @@ impl Settings {
             motion_solver: control.motion_solver.unwrap_or_default(),
             strategy: control.strategy.unwrap_or_default(),
             teams: control.teams.unwrap_or_default(),
+            unreachable: mission.unreachable.unwrap_or_default(),
+            order: mission.order.unwrap_or_default(),
         }
     }
 
@@ -224,21 +233,28 @@ impl From<Settings> for Control {
     }
 }
 
+impl From<Settings> for Agenda {
+    fn from(settings: Settings) -> Self {
+        Agenda { unreachable: Some(settings.unreachable), order: Some(settings.order) }
+    }
+}
+
 /// An error that is 0 is left out.
 fn stated_if_any(error: f64) -> Option<f64> {
     (error != 0.0).then_some(error)
 }
 
 impl Scenario {
-    /// The same scenario with every default of its radio and control settings written out, but that there is one team,
+    /// The same scenario with every default of its radio, control and mission settings written out, but that there is one team,
     /// and but for `build_reliability` where each team has a default of its own.
     #[must_use]
     pub fn with_defaults(&self) -> Self {
-        let mut control: Control = Settings::resolve(self).into();
+        let settings = Settings::resolve(self);
+        let mut control: Control = settings.into();
         if control.teams.is_some() {
             control.build_reliability = self.control.build_reliability;
         }
-        Self { link: self.link.with_defaults(), control, ..self.clone() }
+        Self { link: self.link.with_defaults(), control, mission: settings.into(), ..self.clone() }
     }
 }
 
@@ -257,6 +273,7 @@ mod tests {
             },
             link: LinkRanges::new(0.4, 0.5),
             control,
+            mission: Agenda::default(),
             access_point: vec![AccessPoint { position: [0.5, 0.2] }],
             robot: vec![RobotStart::at([0.6, 0.2], 0.075); 13],
             task: vec![],

@@ -4,7 +4,7 @@ use super::dice::Dice;
 use super::outline::Floor;
 use super::places::Places;
 use pleach::automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+    AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
 };
 
 /// How the robots stand when the mission starts.
@@ -91,6 +91,7 @@ impl Brief {
             workspace: outline,
             link: LinkRanges::new(1.0, self.max_range),
             control: self.control,
+            mission: Agenda::default(),
             access_point: (self.access_points.iter())
                 .map(|&position| AccessPoint { position })
                 .collect(),
