@@ -6,12 +6,13 @@
 //! figures. None of them can influence the robots; a violated property ends the run, and so does
 //! a watcher that asks for it.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use crate::automaton::network::certificate::{Certificate, Hindrance, Standing};
+use crate::automaton::network::certificate::{Bound, Certificate, Hindrance, Standing};
 use crate::automaton::network::phrase;
 use crate::automaton::network::record::{End, Faults, FleetEnd, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::{Fleet, ValidScenario};
@@ -22,7 +23,6 @@ use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason, System};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
-use crate::verify::network::judge::missing;
 use crate::verify::network::storm::{self, Storm};
 use crate::verify::network::{Extremes, Referee, Violation};
 
@@ -250,6 +250,8 @@ pub struct Gallery<'a, 'w> {
     failure: Option<io::Error>,
     /// The robots that send nearly all the time in the last period, with their loads.
     saturated: Vec<(usize, f64)>,
+    /// The tasks that were given up, each with the reason.
+    given_up: BTreeMap<usize, String>,
 }
 
 /// The robots that send nearly all the time, each with its load Σ_j T_ij.
@@ -277,12 +279,20 @@ impl<'a, 'w> Gallery<'a, 'w> {
     ) -> Self {
         let judge = Referee::new(scenario, faults, may_follow);
         let scenario = scenario.clone();
-        Gallery { scenario, judge, watchers, failure: None, saturated: Vec::new() }
+        Gallery {
+            scenario,
+            judge,
+            watchers,
+            failure: None,
+            saturated: Vec::new(),
+            given_up: BTreeMap::new(),
+        }
     }
 
     /// Shows a control period, and says how the mission ends if it has to: a property is violated, a
     /// watcher asks for it, or one of them fails.
     pub fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Option<End> {
+        let events = &self.explain_events(snapshot, events)[..];
         if let Err(error) = self.show(snapshot, events) {
             let reason = error.to_string();
             self.failure = Some(error);
@@ -311,6 +321,37 @@ impl<'a, 'w> Gallery<'a, 'w> {
         Ok(Completed { end, extremes, times: KernelTimes::default() })
     }
 
+    /// The events of a period, where each task that is given up comes with what observers add.
+    fn explain_events(
+        &mut self,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+    ) -> Vec<MissionEvent> {
+        let mut events = self.judge.explain(snapshot, events);
+        for event in &mut events {
+            if let MissionEvent::TaskGivenUp { task, outcome, reason, certificate } = event {
+                let saturated = self.saturated_beside(*task);
+                let more = addition(*outcome, certificate.as_deref(), &saturated);
+                reason.push_str(&more.unwrap_or_default());
+                self.given_up.insert(*task, reason.clone());
+            }
+        }
+        events
+    }
+
+    /// The robots that send nearly all the time, of those that may pursue a task.
+    fn saturated_beside(&self, task: usize) -> Vec<(usize, f64)> {
+        let is_of = |fleet: &&Fleet| fleet.inward().task(task).is_some();
+        let fleet = self.scenario.fleets().iter().find(is_of);
+        self.saturated_of(fleet)
+    }
+
+    /// The robots that send nearly all the time, of a fleet where there are several.
+    fn saturated_of(&self, fleet: Option<&Fleet>) -> Vec<(usize, f64)> {
+        let is_own = |robot: usize| fleet.is_none_or(|it| it.robots().binary_search(&robot).is_ok());
+        self.saturated.iter().filter(|&&(robot, _)| is_own(robot)).copied().collect()
+    }
+
     fn show(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
         for watcher in self.watchers.iter_mut() {
             watcher.observe(snapshot, events)?;
@@ -325,19 +366,33 @@ impl<'a, 'w> Gallery<'a, 'w> {
             return End::of_fleets(fleets.map(|(it, told)| self.explain_fleet(it, told)).collect());
         }
         let certificate = self.judge.account(&end);
-        let task = end.task;
-        explained(End { certificate, ..end }, &self.scenario, task, &self.saturated)
+        self.explained(End { certificate, ..end }, None)
     }
 
     /// The same for the end of the mission of a fleet.
     fn explain_fleet(&self, fleet: &Fleet, told: FleetEnd) -> FleetEnd {
         let FleetEnd { access_point, end } = told;
         let certificate = self.judge.account_of_fleet(access_point, &end);
-        let is_own = |(robot, _): &&(usize, f64)| fleet.robots().binary_search(robot).is_ok();
-        let saturated: Vec<_> = self.saturated.iter().filter(is_own).copied().collect();
-        let task = end.task.and_then(|task| fleet.inward().task(task));
-        let end = explained(End { certificate, ..end }, fleet.scenario(), task, &saturated);
-        FleetEnd { access_point, end }
+        FleetEnd { access_point, end: self.explained(End { certificate, ..end }, Some(fleet)) }
+    }
+
+    /// An end, of a fleet where there are several, with the tasks that were given up and what observers add to its
+    /// reason. Where one was, the reason is why.
+    fn explained(&self, end: End, fleet: Option<&Fleet>) -> End {
+        let is_own = |task: &&usize| fleet.is_none_or(|it| it.inward().task(**task).is_some());
+        let tasks: Vec<usize> = self.given_up.keys().filter(is_own).copied().collect();
+        match &tasks[..] {
+            [] => {
+                let saturated = self.saturated_of(fleet);
+                let more = addition(end.outcome, end.certificate.as_ref(), &saturated);
+                End { reason: end.reason + &more.unwrap_or_default(), ..end }
+            }
+            [task] if end.outcome.is_given_up() => {
+                let reason = self.given_up[task].clone();
+                End { reason, task: Some(*task), tasks, certificate: None, ..end }
+            }
+            _ => End { tasks, certificate: None, ..end },
+        }
     }
 
     /// The end that a watcher asks for.
@@ -353,53 +408,46 @@ impl<'a, 'w> Gallery<'a, 'w> {
     }
 }
 
-/// An end with what observers add to its reason. Its task has this number in the scenario of its mission, in which
-/// these robots send nearly all the time.
-fn explained(
-    end: End,
-    scenario: &ValidScenario,
-    task: Option<usize>,
+/// What observers add to the reason why a mission ends or a task is given up, where these robots send nearly all the
+/// time.
+fn addition(
+    outcome: Outcome,
+    certificate: Option<&Certificate>,
     saturated: &[(usize, f64)],
-) -> End {
-    let reason = match end.outcome {
-        Outcome::Blocked => beside_bodies(&end).or_else(|| overload(saturated, &end)),
-        Outcome::StepLimit => overload(saturated, &end),
-        Outcome::InsufficientRobots => shortage(scenario, task, &end),
+) -> Option<String> {
+    match outcome {
+        Outcome::Blocked => beside_bodies(certificate).or_else(|| overload(saturated)),
+        Outcome::StepLimit => overload(saturated),
+        Outcome::InsufficientRobots => shortage(certificate),
         _ => None,
-    };
-    End { reason: reason.unwrap_or(end.reason), ..end }
+    }
 }
 
 /// A mission that gets stuck while robots send all the time may be stuck because of their links: the reason
 /// names them, too.
-fn overload(saturated: &[(usize, f64)], end: &End) -> Option<String> {
+fn overload(saturated: &[(usize, f64)]) -> Option<String> {
     let loads = saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
     let loads: Vec<String> = loads.collect();
-    if loads.is_empty() {
-        return None;
-    }
-    Some(format!(
-        "{}; the load is {}, and links carry no more: lower the rates, place robots closer together or \
-         add some",
-        end.reason,
-        loads.join(", ")
-    ))
+    (!loads.is_empty()).then(|| {
+        format!(
+            "; the load is {}, and links carry no more: lower the rates, place robots closer together or \
+             add some",
+            loads.join(", ")
+        )
+    })
 }
 
-/// Where robots are too few wherever they stand, the reason says so: `task` by its number in the scenario.
-fn shortage(scenario: &ValidScenario, task: Option<usize>, end: &End) -> Option<String> {
-    let least = missing(scenario, task? + 1)?;
-    let robots = scenario.robot.len();
+/// Where robots are too few wherever they stand, the reason says so.
+fn shortage(certificate: Option<&Certificate>) -> Option<String> {
+    let Some(Certificate::Bound(Bound { least, robots, .. })) = certificate else { return None };
     Some(format!(
-        "{}; wherever robots stand, the tasks so far take {least} of them, and there are {robots}",
-        end.reason
+        "; wherever robots stand, this task and those that are serviced take {least} of them, and there are {robots}"
     ))
 }
 
 /// Where robots of other fleets are beside the robots that stand still, the reason names these.
-fn beside_bodies(end: &End) -> Option<String> {
-    let certificate = end.certificate.as_ref()?;
-    let (Certificate::Blocked { team } | Certificate::Tried { team, .. }) = certificate else {
+fn beside_bodies(certificate: Option<&Certificate>) -> Option<String> {
+    let (Certificate::Blocked { team } | Certificate::Tried { team, .. }) = certificate? else {
         return None;
     };
     let is_body = |hindrance: &Hindrance| matches!(hindrance, Hindrance::Body { .. });
@@ -407,7 +455,7 @@ fn beside_bodies(end: &End) -> Option<String> {
     let robots: Vec<usize> = team.iter().filter(is_beside).map(|it| it.robot).collect();
     (!robots.is_empty()).then(|| {
         let robots = phrase::named("robot", &robots);
-        format!("{}; a robot of another access point stands beside {robots}", end.reason)
+        format!("; a robot of another access point stands beside {robots}")
     })
 }
 

@@ -205,6 +205,9 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             (format!("task {task} has ended: it was serviced for as long as it was to be"), None)
         }
         MissionEvent::TaskWithdrawn { task } => (format!("task {task} is taken back"), None),
+        MissionEvent::TaskGivenUp { task, reason, .. } => {
+            (format!("task {task} is given up: {reason}"), None)
+        }
         other => (format!("{other:?}"), None),
     }
 }

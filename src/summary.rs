@@ -25,7 +25,7 @@ pub struct Summary {
 }
 
 /// What became of a task.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TaskSummary {
     /// q_v: where it is.
     pub position: [f64; 2],
@@ -39,12 +39,14 @@ pub struct TaskSummary {
 }
 
 /// How a task came to be over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Closing {
     /// It was serviced for as long as it was to be.
     Ended,
     /// The user took it back.
     Withdrawn,
+    /// No robot could service it, for this reason.
+    GivenUp(String),
 }
 
 impl TaskSummary {
@@ -65,20 +67,34 @@ impl TaskSummary {
 
     /// Since when it is over, and how that came.
     pub(crate) fn closing(&self) -> Option<String> {
-        self.closed.map(|(step, closing)| match closing {
+        self.closed.as_ref().map(|(step, closing)| match closing {
             Closing::Ended => format!("ended at k = {step}"),
             Closing::Withdrawn => format!("taken back at k = {step}"),
+            Closing::GivenUp(_) => format!("given up at k = {step}"),
         })
     }
 
     /// What became of it if it was not serviced.
     pub(crate) fn unserviced(&self) -> String {
-        self.closing().unwrap_or_else(|| "not serviced".to_owned())
+        let closing = self.closing().unwrap_or_else(|| "not serviced".to_owned());
+        match self.given_up() {
+            Some(reason) => format!("{closing}: {reason}"),
+            None => closing,
+        }
+    }
+
+    /// Why it was given up, if it was.
+    pub fn given_up(&self) -> Option<&str> {
+        match &self.closed {
+            Some((_, Closing::GivenUp(reason))) => Some(reason),
+            _ => None,
+        }
     }
 
     /// Whether it has been serviced, and is over or a robot still stays close to it.
     fn is_serviced(&self) -> bool {
-        self.serviced.is_some() && (self.holder.is_some() || self.closed.is_some())
+        let is_held_or_over = self.holder.is_some() || self.closed.is_some();
+        self.serviced.is_some() && is_held_or_over && self.given_up().is_none()
     }
 }
 
@@ -202,6 +218,9 @@ impl Watcher for Summary {
                 MissionEvent::TaskWithdrawn { task } => {
                     self.close(task, snapshot.step, Closing::Withdrawn);
                 }
+                MissionEvent::TaskGivenUp { task, ref reason, .. } => {
+                    self.close(task, snapshot.step, Closing::GivenUp(reason.clone()));
+                }
                 _ => {}
             }
         }
@@ -260,7 +279,8 @@ impl Summary {
             let place = format!("({x}, {y})");
             let label = format!("task {number}");
             write!(formatter, "  {label:<19} {place:<14} ")?;
-            match task.serviced.zip(task.robots()) {
+            let serviced = task.serviced.filter(|_| task.given_up().is_none());
+            match serviced.zip(task.robots()) {
                 Some(((step, _), robots)) => {
                     writeln!(formatter, "serviced at k = {step} {robots}")?;
                 }

@@ -147,6 +147,9 @@ pub(super) struct EndLine {
     reason: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     task: Option<usize>,
+    /// The tasks that were given up while the mission went on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    tasks: Vec<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     certificate: Option<Certificate>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -314,6 +317,7 @@ impl From<&End> for EndLine {
             outcome: end.outcome,
             reason: (!serviced).then(|| end.reason.clone()),
             task: end.task.filter(|_| !serviced),
+            tasks: end.tasks.clone(),
             certificate: end.certificate.clone(),
             fleets: end.fleets.iter().map(FleetEndLine::from).collect(),
         }
@@ -322,9 +326,10 @@ impl From<&End> for EndLine {
 
 impl From<EndLine> for End {
     fn from(line: EndLine) -> Self {
-        let EndLine { outcome, reason, task, certificate, fleets } = line;
+        let EndLine { outcome, reason, task, tasks, certificate, fleets } = line;
         let fleets = fleets.into_iter().map(FleetEnd::from).collect();
-        Self { outcome, reason: reason.unwrap_or_default(), task, certificate, fleets }
+        let reason = reason.unwrap_or_default();
+        Self { outcome, reason, task, tasks, certificate, fleets }
     }
 }
 

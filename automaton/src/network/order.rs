@@ -17,6 +17,8 @@ pub struct Errand {
     pub position: Point,
     /// For how many control periods it is to be serviced; none: for ever.
     pub lasts: Option<u32>,
+    /// Tasks of a higher priority come first, where the order of the mission says so.
+    pub priority: i32,
     /// Whether the user has taken it back.
     pub withdrawn: bool,
 }
@@ -41,6 +43,7 @@ impl Order {
         let errand = |task: &Task| Errand {
             position: task.position.into(),
             lasts: task.lasts,
+            priority: task.priority.unwrap_or_default(),
             withdrawn: task.withdrawn.is_some_and(|withdrawn| withdrawn <= period),
         };
         Order { tasks: tasks[..count].iter().map(errand).collect(), continues: count < tasks.len() }

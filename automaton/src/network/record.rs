@@ -245,6 +245,15 @@ pub enum MissionEvent {
     TaskEnded { task: usize },
     /// The user has taken a task back: the robots that service or pursue it are free.
     TaskWithdrawn { task: usize },
+    /// No robot can service a task: it is given up, its team is dissolved, and the mission goes on with the others.
+    /// The certificate is the observers' account of why.
+    TaskGivenUp {
+        task: usize,
+        outcome: Outcome,
+        reason: String,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        certificate: Option<Box<Certificate>>,
+    },
 }
 
 /// How a mission ended.
@@ -256,6 +265,8 @@ pub struct End {
     pub reason: String,
     /// The task concerned.
     pub task: Option<usize>,
+    /// The tasks that were given up while the mission went on, ascending.
+    pub tasks: Vec<usize>,
     /// What observers add to show that it had to end so, where a mission ends before its tasks are serviced.
     pub certificate: Option<Certificate>,
     /// How the mission of each fleet ended, by access point, where there are several.
@@ -274,7 +285,7 @@ pub struct FleetEnd {
 impl End {
     /// An end without a certificate.
     pub const fn new(outcome: Outcome, reason: String, task: Option<usize>) -> Self {
-        End { outcome, reason, task, certificate: None, fleets: Vec::new() }
+        End { outcome, reason, task, tasks: Vec::new(), certificate: None, fleets: Vec::new() }
     }
 
     /// The end of a mission that has taken as many control periods as it may.
@@ -306,7 +317,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Whether robots gave up: such an end comes with a [`Certificate`].
+    /// Whether robots gave up: such an end comes with a [`Certificate`], or each task that was given up does.
     pub const fn is_given_up(self) -> bool {
         matches!(self, Outcome::InsufficientRobots | Outcome::UnreachableTask | Outcome::Blocked)
     }

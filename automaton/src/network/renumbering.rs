@@ -108,6 +108,10 @@ impl MissionEvent {
             | MissionEvent::ElectionRepeated { task }
             | MissionEvent::TaskEnded { task }
             | MissionEvent::TaskWithdrawn { task } => Named::tasks([task]),
+            MissionEvent::TaskGivenUp { task, certificate, .. } => {
+                let claims = certificate.as_mut().map(|it| it.named()).unwrap_or_default();
+                Named::tasks([task]).and(claims)
+            }
             MissionEvent::LeaderElected { task, robot, .. }
             | MissionEvent::TaskServiced { task, robot } => {
                 Named::tasks([task]).and(Named::nodes([robot]))
@@ -198,7 +202,7 @@ impl End {
     #[must_use]
     pub fn renumbered(&self, by: &Renumbering) -> Option<Self> {
         let mut end = self.clone();
-        by.apply(Named::tasks(&mut end.task))?;
+        by.apply(Named::tasks(end.task.iter_mut().chain(&mut end.tasks)))?;
         if let Some(certificate) = &mut end.certificate {
             by.apply(certificate.named())?;
         }

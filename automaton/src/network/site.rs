@@ -346,6 +346,16 @@ impl Site {
         reached.unwrap_or_else(|| self.free_space.nearest(task))
     }
 
+    /// The length of the shortest way to the place from which a task is serviced, from the nearest of these places or of
+    /// the free places beside them; infinite if there is none.
+    pub fn way_from(&self, places: &[Point], task: Point) -> f64 {
+        let ways = places.iter().map(|&place| {
+            let start = self.free_space.nearest(place);
+            self.distance(start, self.place_to_service(task, start))
+        });
+        ways.fold(f64::INFINITY, f64::min)
+    }
+
     /// The length of the shortest way in 𝒲_f; infinite if there is none.
     pub fn distance(&self, from: Point, to: Point) -> f64 {
         #[cfg(feature = "abstraction")]

@@ -12,7 +12,7 @@ vocabulary! {
         Electing = "electing",
         /// The leader pursues its task, or a recruit is on its way to it.
         UnderWay = "under way",
-        /// The task announced last is done, serviced or taken back: none is pursued.
+        /// The task announced last is done, serviced, taken back or given up: none is pursued.
         Done = "done",
         /// The mission has ended.
         Over = "over",
@@ -35,6 +35,8 @@ vocabulary! {
         AnnouncesAgain = "announces again",
         /// The user has taken back the task that is pursued.
         Withdraws = "withdraws",
+        /// No robot can service the task that is pursued: it gives that up, and goes on with the others.
+        GivesUp = "gives up",
         /// A task that is not pursued is over: it has lasted as long as it should, or the user has taken it
         /// back.
         Closes = "closes",
@@ -109,6 +111,7 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(1, Electing, On::Withdraws, Done),
         row(2, Electing, On::Closes, Electing),
         row(3, Electing, On::AnnouncesAgain, Electing),
+        row(3, Electing, On::GivesUp, Done),
         row(3, Electing, On::NoRobot, Over),
         row(3, Electing, On::NoBid, Over),
         row(3, Electing, On::NoAnswer, Over),
@@ -119,6 +122,7 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(1, UnderWay, On::Withdraws, Done),
         row(2, UnderWay, On::Closes, UnderWay),
         row(3, UnderWay, On::AnnouncesAgain, Electing),
+        row(3, UnderWay, On::GivesUp, Done),
         row(3, UnderWay, On::NoRobot, Over),
         row(0, Done, On::ElectionHeard, Electing),
         row(0, Done, On::ProgressHeard, UnderWay),

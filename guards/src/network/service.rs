@@ -21,10 +21,29 @@ pub fn service_heard() -> Guard {
     named("service heard", proposition("hears_service"))
 }
 
-/// It hears that the mission has ended, and has nobody else to ask.
+/// It hears that the mission has ended, has nobody else to ask, and does not go on with other tasks.
 pub fn end_heard() -> Guard {
-    let may_go_on = pursues() & proposition("hears_failure") & may_ask_others();
+    let goes_on = may_ask_others() | proposition("skips_tasks");
+    let may_go_on = pursues() & proposition("hears_failure") & goes_on;
     named("end heard", proposition("hears_end") & !may_go_on)
+}
+
+/// The robots have given up the task that is pursued, there is nobody else to ask, and others may be serviced.
+pub fn gives_up() -> Guard {
+    named("gives up", may_skip() & is_abandoned())
+}
+
+/// So it is while the election is under way, or nobody bids in it, or it goes unanswered.
+pub fn gives_up_election() -> Guard {
+    named("gives up", may_skip() & (is_abandoned() | finds_no_bid() | finds_no_answer()))
+}
+
+fn may_skip() -> Predicate {
+    pursues() & proposition("skips_tasks")
+}
+
+fn is_abandoned() -> Predicate {
+    proposition("hears_failure") & !may_ask_others()
 }
 
 /// The robots that take part now are not those of the elections for its task, or may not be in a while; or it is given up
@@ -121,7 +140,11 @@ pub fn closes() -> Guard {
 
 /// The leader election is over, no robot has bid, and there is nobody else to ask.
 pub fn no_bid() -> Guard {
-    named("no bid", pursues() & lacks_bid() & !may_ask_others() & !may_find_ways())
+    named("no bid", pursues() & finds_no_bid() & !proposition("skips_tasks"))
+}
+
+fn finds_no_bid() -> Predicate {
+    lacks_bid() & !may_ask_others() & !may_find_ways()
 }
 
 /// Robots that could not bid for want of a way to an access point know one now, or may in a while.
@@ -145,9 +168,12 @@ fn lacks_bid() -> Predicate {
 /// The election lasts longer than news can take, all who take part have been heard of, and so it has
 /// been each time.
 pub fn no_answer() -> Guard {
+    named("no answer", pursues() & finds_no_answer() & !proposition("skips_tasks"))
+}
+
+fn finds_no_answer() -> Predicate {
     let each_time = variable("unanswered").at_least(variable("attempts"));
-    let in_vain = goes_unanswered() & each_time & !proposition("hears_failure");
-    named("no answer", pursues() & in_vain)
+    goes_unanswered() & each_time & !proposition("hears_failure")
 }
 
 /// A robot that takes part in the elections for the task is gone, and others are left; or they have given the

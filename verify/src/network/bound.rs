@@ -1,10 +1,12 @@
 //! How few robots any tree to some tasks takes, by lengths alone.
 //!
-//! A tree that services tasks joins the access points, which are wired to each other, with a place
-//! within δ of each task. Every robot of it has one link to its parent, and along geodesics none is
-//! longer than d_hard. So a tree of n robots is at most n · d_hard long, wherever its robots stand
-//! and whatever they have done before; and it is at least as long as a shortest network that joins
-//! these places, for which a spanning tree gives a bound. Nothing here knows of the protocol.
+//! A tree that services tasks joins the access points, which are wired to each other, with a place within δ of each
+//! task. Every robot of it has one link to its parent, and no link is longer than the range u of the radio. So a tree of
+//! n robots is at most n u long as the crow flies, wherever its robots stand and whatever they have done before; and it
+//! is at least as long as a shortest network that joins these places, for which a spanning tree gives a bound. That
+//! follows from the radio alone: walls, rates and the rules of the robots only make more robots necessary.
+//!
+//! Lengths along shortest ways around walls are a measure of how much a mission asks for, and no bound.
 
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_continuous::Point;
@@ -17,8 +19,8 @@ const ROUNDING: f64 = 1e-6;
 
 /// The lengths between the access points and the tasks of a mission, from which bounds follow.
 ///
-/// A corridor 2 long with an access point at its left end, and links up to 0.45 long: the task at the
-/// right end takes five robots, wherever they are.
+/// A corridor 2 long with an access point at its left end, and links up to 0.5 long: the task at the
+/// right end takes four robots, wherever they are.
 ///
 /// ```
 /// use pleach_automaton::network::scenario::{
@@ -34,18 +36,18 @@ const ROUNDING: f64 = 1e-6;
 ///         holes: Vec::new(),
 ///     },
 ///     link: LinkRanges::new(0.4, 0.5),
-///     control: Control { tree_reliability: Some(0.5), ..Control::default() },
+///     control: Control::default(),
 ///     mission: Agenda::default(),
 ///     access_point: vec![AccessPoint { position: [0.1, 0.1] }],
 ///     robot: vec![RobotStart::at([0.3, 0.1], 0.01)],
 ///     task: vec![Task::at([2.1, 0.1])],
 /// })?;
-/// assert_eq!(Spans::of(&scenario)?.least_robots(1), Some(5));
+/// assert_eq!(Spans::as_the_crow_flies(&scenario).least_robots(&[0]), Some(4));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Spans {
-    /// d_hard.
+    /// No link is longer.
     longest_link: f64,
     /// From the nearest access point to within δ of each task.
     from_access: Vec<f64>,
@@ -54,11 +56,29 @@ pub struct Spans {
 }
 
 impl Spans {
-    /// The lengths of a mission.
+    /// Straight lengths, from which a bound follows that holds in every workspace.
+    pub fn as_the_crow_flies(scenario: &ValidScenario) -> Self {
+        let limits = Limits::of(scenario);
+        let (tasks, radius) = (limits.tasks(), limits.service_radius());
+        let to_access = |task: &Point| {
+            let ways = limits.access_points().iter().map(|access| (access - task).norm() - radius);
+            ways.fold(f64::INFINITY, f64::min).max(0.0)
+        };
+        let gap = |one: Point, other: Point| ((one - other).norm() - 2.0 * radius).max(0.0);
+        Spans {
+            longest_link: limits.max_range(),
+            from_access: tasks.iter().map(to_access).collect(),
+            between: (tasks.iter().enumerate())
+                .map(|(at, &task)| tasks[..at].iter().map(|&it| gap(task, it)).collect())
+                .collect(),
+        }
+    }
+
+    /// Lengths along shortest ways around walls, to compare what missions take.
     ///
     /// # Errors
     /// When no robot has a place to stand.
-    pub fn of(scenario: &ValidScenario) -> Result<Self, FreeSpaceError> {
+    pub fn along_ways(scenario: &ValidScenario) -> Result<Self, FreeSpaceError> {
         let limits = Limits::of(scenario);
         let floor = Floor::of(&limits)?;
         let tasks: Vec<Vicinity> =
@@ -69,12 +89,17 @@ impl Spans {
         };
         let before = |at: usize| &tasks[..at];
         Ok(Spans {
-            longest_link: limits.longest_tree_link(),
+            longest_link: limits.max_range(),
             from_access: tasks.iter().map(from_access).collect(),
             between: (tasks.iter().enumerate())
                 .map(|(at, task)| before(at).iter().map(|it| floor.gap(task, it)).collect())
                 .collect(),
         })
+    }
+
+    /// No link is longer than this: the range u of the radio.
+    pub const fn longest_link(&self) -> f64 {
+        self.longest_link
     }
 
     /// From the nearest access point to within δ of a task; infinite if no way leads there.
@@ -86,25 +111,24 @@ impl Spans {
         self.between[one.max(other)][one.min(other)]
     }
 
-    /// The length of a shortest spanning tree of the access points, as one, and the first `tasks`
-    /// tasks; infinite if no way leads to one of these.
-    pub fn spanning_tree(&self, tasks: usize) -> f64 {
+    /// The length of a shortest spanning tree of the access points, as one, and these tasks; infinite if no way leads to
+    /// one of them.
+    pub fn spanning_tree(&self, tasks: &[usize]) -> f64 {
         self.spanning_edges(tasks).iter().sum()
     }
 
     /// The robots of such a tree, where each of its edges is a chain of links that are no longer than `link`, and
     /// ends with a robot of its own. Infinite if no way leads to a task.
-    pub fn robots_of_spanning_tree(&self, tasks: usize, link: f64) -> f64 {
+    pub fn robots_of_spanning_tree(&self, tasks: &[usize], link: f64) -> f64 {
         let robots = |length: &f64| (length / link - ROUNDING).ceil().max(1.0);
         self.spanning_edges(tasks).iter().map(robots).sum()
     }
 
-    /// The lengths of the edges of a shortest spanning tree of the access points, as one, and the first `tasks`
-    /// tasks (Prim).
-    fn spanning_edges(&self, tasks: usize) -> Vec<f64> {
-        let mut ways: Vec<f64> = self.from_access[..tasks].to_vec();
-        let mut outside: Vec<usize> = (0..tasks).collect();
-        let mut edges = Vec::with_capacity(tasks);
+    /// The lengths of the edges of a shortest spanning tree of the access points, as one, and these tasks (Prim).
+    fn spanning_edges(&self, tasks: &[usize]) -> Vec<f64> {
+        let mut ways = self.from_access.clone();
+        let mut outside = tasks.to_vec();
+        let mut edges = Vec::with_capacity(tasks.len());
         while let Some(at) =
             (0..outside.len()).min_by(|&a, &b| ways[outside[a]].total_cmp(&ways[outside[b]]))
         {
@@ -117,27 +141,26 @@ impl Spans {
         edges
     }
 
-    /// A bound from below on the length of any network that joins the access points with the first
-    /// `tasks` tasks: it is no shorter than the way to the farthest of them and, of a spanning tree of
-    /// k places, no shorter than the share k / (2k − 2), in every metric.
-    pub fn least_length(&self, tasks: usize) -> f64 {
-        let farthest = self.from_access[..tasks].iter().copied().fold(0.0, f64::max);
-        let share = (tasks + 1) as f64 / (2 * tasks).max(1) as f64;
+    /// A bound from below on the length of any network that joins the access points with these tasks: it is no shorter
+    /// than the way to the farthest of them and, of a spanning tree of k places, no shorter than the share k / (2k − 2),
+    /// in every metric.
+    pub fn least_length(&self, tasks: &[usize]) -> f64 {
+        let farthest = tasks.iter().map(|&task| self.from_access[task]).fold(0.0, f64::max);
+        let share = (tasks.len() + 1) as f64 / (2 * tasks.len()).max(1) as f64;
         farthest.max(share * self.spanning_tree(tasks))
     }
 
-    /// How many robots any tree has that services the first `tasks` tasks at the same time; none if no
-    /// way leads to one of them.
-    pub fn least_robots(&self, tasks: usize) -> Option<usize> {
+    /// How many robots any tree has that services these tasks at the same time; none if no way leads to one of them.
+    pub fn least_robots(&self, tasks: &[usize]) -> Option<usize> {
         let length = self.least_length(tasks);
         let by_length = (length / self.longest_link - ROUNDING).ceil().max(0.0);
         length.is_finite().then(|| (by_length as usize).max(self.least_leaves(tasks)))
     }
 
     /// Tasks so far from each other that each takes a robot of its own.
-    fn least_leaves(&self, tasks: usize) -> usize {
+    fn least_leaves(&self, tasks: &[usize]) -> usize {
         let mut apart: Vec<usize> = Vec::new();
-        for task in 0..tasks {
+        for &task in tasks {
             if apart.iter().all(|&other| self.between(task, other) > 0.0) {
                 apart.push(task);
             }

@@ -53,7 +53,9 @@ impl<'a> Monitor<'a> {
     /// over.
     pub fn expect(&mut self, events: &[MissionEvent]) {
         self.closed.extend(events.iter().filter_map(|event| match *event {
-            MissionEvent::TaskEnded { task } | MissionEvent::TaskWithdrawn { task } => Some(task),
+            MissionEvent::TaskEnded { task }
+            | MissionEvent::TaskWithdrawn { task }
+            | MissionEvent::TaskGivenUp { task, .. } => Some(task),
             _ => None,
         }));
     }

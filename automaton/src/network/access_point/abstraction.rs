@@ -96,7 +96,7 @@ impl AccessPoint {
         let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
         let patience = self.site.patience_with_tasks() + 1;
         let tasks: Vec<u32> =
-            self.known_tasks.iter().map(|task| task.silence.min(patience)).collect();
+            self.known_tasks.values().map(|task| task.silence.min(patience)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful, &self.joiners);
         let told = (self.period, &self.roll, reports, (self.is_new, self.is_behind));
         let mut account = self.account();
@@ -129,6 +129,7 @@ impl AccessPoint {
             service,
             closed,
             // Constant: the request comes before the first state, and does not change. No task of it ends.
+            given_up: _,
             closed_in: _,
             announced_in: _,
             given_up_in: _,

@@ -229,7 +229,7 @@ impl AccessPoint {
         for attendee in &mut self.attendees {
             attendee.review(&site.automata.attendance)?;
         }
-        self.known_tasks.iter_mut().for_each(TaskRecord::pass_period);
+        self.known_tasks.values_mut().for_each(TaskRecord::pass_period);
         self.note_joiners();
         if self.is_first() {
             let absent = self.absent();
@@ -292,8 +292,8 @@ impl AccessPoint {
     }
 
     /// The tasks that have been serviced and are not over.
-    fn services(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
-        let known = self.known_tasks.iter().copied().enumerate();
+    pub(super) fn services(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
+        let known = self.known_tasks.iter().map(|(&task, &known)| (task, known));
         known.filter(|&(task, _)| !self.closed.contains(task))
     }
 

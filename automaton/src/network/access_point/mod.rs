@@ -13,6 +13,7 @@ mod service;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -22,9 +23,10 @@ use super::beacon::{Announced, Beacon, Bulletin, CallRoute, LastBeacon, Notice, 
 use super::member::{NodeOutputs, Sense};
 use super::message::Message;
 use super::order::Order;
-use super::record::MissionEvent;
+use super::record::{MissionEvent, Outcome};
 use super::robot::{PATIENCE_WITH_UNUSED_POSTS, RobotError, RobotFault};
 use super::roll::{Roll, Sightings, Wreck};
+use super::scenario::TaskOrder;
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election, renew};
 use super::site::Site;
@@ -99,12 +101,14 @@ pub struct AccessPoint {
     /// The newest roll.
     roll: Roll,
     settled_rounds: usize,
-    /// What it knows of each task that has been serviced; of one that was passed over, that it is closed.
-    known_tasks: Vec<TaskRecord>,
+    /// What it knows of each task that has been serviced, also of those that are over by now.
+    known_tasks: BTreeMap<usize, TaskRecord>,
     /// The tasks that are serviced by robots attached here.
     serves: Arc<IdSet>,
     /// The tasks that are over.
     closed: Arc<IdSet>,
+    /// The tasks that no robot could service, in this order, and how each of them ended.
+    given_up: Vec<(usize, Outcome)>,
     /// The control period in which it has closed a task last that had been announced.
     closed_in: Option<u32>,
     /// The control period in which the task was announced last.
@@ -160,9 +164,10 @@ impl AccessPoint {
             roster: Arc::default(),
             connected: Arc::default(),
             settled_rounds: 0,
-            known_tasks: Vec::new(),
+            known_tasks: BTreeMap::new(),
             serves: Arc::default(),
             closed: Arc::default(),
+            given_up: Vec::new(),
             closed_in: None,
             announced_in: 0,
             given_up_in: None,
@@ -355,8 +360,8 @@ impl AccessPoint {
             }
             Notice::Path(_) => self.agreement = Some(Agreement::new(id)),
             Notice::Serviced { task } => {
-                self.expect_serviced(task + 1);
-                self.known_tasks[task] = TaskRecord::default();
+                self.expect_serviced(task);
+                self.known_tasks.insert(task, TaskRecord::default());
             }
             Notice::Withdrawn { task } => {
                 self.expect_serviced(task);
@@ -367,17 +372,20 @@ impl AccessPoint {
         self.bulletin = bulletin;
     }
 
-    /// The tasks before this one have been serviced, or are closed.
-    fn expect_serviced(&mut self, end: usize) {
-        let known = self.known_tasks.len().max(end);
-        self.known_tasks.resize(known, TaskRecord::default());
+    /// Where tasks are announced in the order of the file, those before this one have been serviced, or are closed.
+    fn expect_serviced(&mut self, task: usize) {
+        if self.site.settings.order == TaskOrder::File {
+            (0..task).for_each(|before| {
+                self.known_tasks.entry(before).or_default();
+            });
+        }
     }
 
     /// A task is over: from now on its robots hear so.
     fn close(&mut self, task: usize) {
         Arc::make_mut(&mut self.closed).insert(task);
-        let is_announced = self.announced.as_ref().is_some_and(|(_, it)| task <= it.task);
-        if is_announced || task < self.known_tasks.len() {
+        let is_pursued = self.announced.as_ref().is_some_and(|(_, it)| task == it.task);
+        if is_pursued || self.known_tasks.contains_key(&task) {
             self.closed_in = Some(self.period);
         }
     }
@@ -492,9 +500,7 @@ impl AccessPoint {
             }
         }
         for task in reports.serves.iter() {
-            if let Some(known) = self.known_tasks.get_mut(task) {
-                known.silence = 0;
-            }
+            self.known_tasks.entry(task).or_default().silence = 0;
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pleach_continuous::Point;
 use pleach_discrete::network::{IdSet, NodeId, SERVICE, Service, ServiceEvent};
 use pleach_guards::{Guard, network::service as guards};
 
@@ -15,6 +16,7 @@ use crate::network::order::Errand;
 use crate::network::phrase;
 use crate::network::record::{MissionEvent, Outcome};
 use crate::network::roll::why_absent;
+use crate::network::scenario::{TaskOrder, Unreachable};
 use crate::network::service::{Announced, Done, Electing, Gathering, Over, Serving, UnderWay};
 use crate::network::shared::Shared;
 
@@ -92,10 +94,12 @@ crate::observed! {
         hears_want: point.hears_want(),
         /// A notice that the mission has ended for lack of robots has been received since the task was announced.
         wants_robots: point.given_up_in.is_some(),
+        /// A task that no robot can service is given up, and the mission goes on.
+        skips_tasks: point.site.settings.unreachable == Unreachable::Skip,
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// A task is to be announced: one that is no longer serviced, or the next one asked for.
-        task_left: point.next_task().is_some(),
+        task_left: point.abandoned().is_some() || point.new_tasks().next().is_some(),
         /// A task that is serviced is to end: its robots are free then.
         awaits_end: point.awaits_end(),
         /// A task has ended since it announced its task, or so shortly before that robots could not be recruited yet.
@@ -135,6 +139,8 @@ pub enum ServiceEffect {
     Supersede(Notice),
     /// This task is over: its robots hear so.
     Close(usize),
+    /// No robot can service this task.
+    GiveUp(usize, Outcome),
     /// It reports to observers.
     Report(MissionEvent),
 }
@@ -164,6 +170,7 @@ impl Holds<Serving> for AccessPoint {
                     self.take_up(self.bulletin.superseding(self.id(), Shared::new(notice)));
                 }
                 ServiceEffect::Close(task) => self.close(task),
+                ServiceEffect::GiveUp(task, outcome) => self.given_up.push((task, outcome)),
                 ServiceEffect::Report(event) => self.log.push(event),
             }
         }
@@ -193,9 +200,19 @@ impl AccessPoint {
         }
     }
 
+    /// How and why the robots have given up a task, as it hears.
+    fn heard_failure(&self) -> Option<(Outcome, &str)> {
+        match self.heard_notice()? {
+            Notice::Ended { outcome, reason, .. } if outcome.is_given_up() => {
+                Some((*outcome, reason))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether it hears that the mission has ended with a task that is given up.
     fn hears_failure(&self) -> bool {
-        self.heard_end().is_some_and(Outcome::is_given_up)
+        self.heard_failure().is_some()
     }
 
     /// Whether it hears that the mission has ended for want of robots.
@@ -280,12 +297,45 @@ impl AccessPoint {
         !self.closed.contains(task)
     }
 
-    /// The task to announce next: the first that has been serviced and is not any more, or the first after
-    /// all that have been; none that is over.
+    /// The task to announce next: the first that has been serviced and is not any more, or the next one of the others
+    /// by the order of the mission; none that is over.
     pub(super) fn next_task(&self) -> Option<usize> {
+        self.abandoned().or_else(|| self.next_new_task())
+    }
+
+    /// The first task asked for that has been serviced and is not any more.
+    fn abandoned(&self) -> Option<usize> {
         let asked_for = self.errands().count();
-        let new = || (self.known_tasks.len()..asked_for).find(|&task| self.is_open(task));
-        self.abandoned_task().filter(|&task| task < asked_for).or_else(new)
+        self.abandoned_task().filter(|&task| task < asked_for)
+    }
+
+    /// The tasks asked for that have not been serviced and are not over.
+    fn new_tasks(&self) -> impl Iterator<Item = (usize, Errand)> {
+        let is_new = |task| !self.known_tasks.contains_key(&task) && self.is_open(task);
+        self.errands().filter(move |&(task, _)| is_new(task))
+    }
+
+    fn next_new_task(&self) -> Option<usize> {
+        let mut tasks = self.new_tasks();
+        let next = match self.site.settings.order {
+            TaskOrder::File => tasks.next(),
+            TaskOrder::Priority => {
+                tasks.min_by_key(|(_, errand)| std::cmp::Reverse(errand.priority))
+            }
+            TaskOrder::Nearest => {
+                let roots = self.roots();
+                let ways = tasks.map(|it| (self.site.way_from(&roots, it.1.position), it));
+                ways.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, it)| it)
+            }
+        };
+        next.map(|(task, _)| task)
+    }
+
+    /// The places from which the tree grows: the access points, and the tasks that are serviced.
+    fn roots(&self) -> Vec<Point> {
+        let serviced = self.services().filter_map(|(task, _)| self.errands().nth(task));
+        let tasks = serviced.map(|(_, errand)| errand.position);
+        self.site.access_points.iter().copied().chain(tasks).collect()
     }
 
     /// Whether the user will ask for another task, or one is serviced that is to end.
@@ -297,7 +347,7 @@ impl AccessPoint {
     /// Whether a task that is serviced is to end.
     fn awaits_end(&self) -> bool {
         let pursued = self.pursued_task();
-        let is_serviced = |task: usize| task < self.known_tasks.len() && pursued != Some(task);
+        let is_serviced = |task| self.known_tasks.contains_key(&task) && pursued != Some(task);
         self.tasks_to_end().any(is_serviced)
     }
 
@@ -325,7 +375,7 @@ impl AccessPoint {
         let mut open =
             self.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
         open.find_map(|(task, errand)| {
-            let serviced = self.known_tasks.get(task);
+            let serviced = self.known_tasks.get(&task);
             let has_ended = |periods| serviced.is_some_and(|known| known.has_lasted(periods));
             match errand.lasts {
                 _ if errand.withdrawn => Some((task, MissionEvent::TaskWithdrawn { task })),
@@ -357,12 +407,17 @@ impl AccessPoint {
         Some(Announcement {
             task,
             position: requested.tasks.get(task)?.position,
-            before: requested.positions(self.known_tasks.len().max(task)),
+            before: requested.positions(self.end_of_known_tasks().max(task)),
             roster: self.present_roster(),
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
             again: false,
             stretched: false,
         })
+    }
+
+    /// A number above those of all tasks that have been serviced.
+    fn end_of_known_tasks(&self) -> usize {
+        self.known_tasks.last_key_value().map_or(0, |(task, _)| task + 1)
     }
 
     /// The robots that take part now. The roll may have been called since its roster was made up.
@@ -388,6 +443,43 @@ impl AccessPoint {
         let epoch = self.newest.as_ref().map(|newest| newest.id().epoch());
         let current = self.announced.as_ref().filter(|(id, _)| Some(id.epoch()) == epoch);
         current.map(|(_, announcement)| electors_of(announcement))
+    }
+
+    /// Why no robot bids for a task.
+    fn why_no_bid(&self, task: usize) -> (Outcome, String) {
+        let name = self.site.name_of_task(task);
+        let absent: Vec<NodeId> = self.absent_robots().collect();
+        let cut_off: Vec<NodeId> = self.searchers().collect();
+        let no_robot = format!("no robot is left that can go to task {name}");
+        if !absent.is_empty() {
+            let why = why_absent(&self.site.names_of(&absent));
+            return (Outcome::InsufficientRobots, format!("{no_robot}: {why}"));
+        }
+        if !cut_off.is_empty() {
+            let cut_off = phrase::robots(&self.site.names_of(&cut_off), ["knows", "know"]);
+            let why = format!("{cut_off} no way to an access point any more");
+            return (Outcome::InsufficientRobots, format!("{no_robot}: {why}"));
+        }
+        if let Some(left) = self.access_points_left() {
+            let reason = format!(
+                "no robot of {} can lead a team to task {name}, and those of the others find no recruit",
+                phrase::named("access point", &left)
+            );
+            return (Outcome::InsufficientRobots, reason);
+        }
+        let reason = format!(
+            "no robot can come within the service radius of task {name}: it lies in a wall, too near \
+             to one, or in a part of the workspace that no robot can enter"
+        );
+        (Outcome::UnreachableTask, reason)
+    }
+
+    /// Why the election for a task cannot end.
+    fn why_unanswered(&self, announced: &Announced) -> String {
+        let missing = self.site.names_of(&self.unanswering(&announced.roster));
+        let name = self.site.name_of_task(announced.task);
+        let missing = phrase::robots(&missing, ["does", "do"]);
+        format!("the election for task {name} cannot end: {missing} not answer any more")
     }
 
     fn is_election_over(&self) -> bool {
@@ -471,7 +563,7 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
     let task = point.next_task()?;
     let announcement = point.announcement_of(task)?;
     let announced = Some(point.announced_now(&announcement));
-    let is_new = task >= point.known_tasks.len();
+    let is_new = !point.known_tasks.contains_key(&task);
     effects.push(ServiceEffect::Report(match is_new {
         true => MissionEvent::TaskAnnounced { task },
         false => MissionEvent::TaskReannounced { task, gone: point.gone(), joined: Vec::new() },
@@ -487,6 +579,23 @@ fn withdraw<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects)
         effects.push(ServiceEffect::Report(MissionEvent::TaskWithdrawn { task }));
     }
     effects.push(ServiceEffect::Supersede(Notice::Withdrawn { task }));
+    Some(Done { task })
+}
+
+/// No robot can service the task that is pursued: those who pursue it stop, and its team is dissolved.
+fn give_up<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
+    let announced = place.announced()?;
+    let task = announced.task;
+    let (outcome, reason) = match point.heard_failure() {
+        Some((outcome, reason)) => (outcome, reason.to_string()),
+        None if point.is_election_over() => point.why_no_bid(task),
+        None => (Outcome::Blocked, point.why_unanswered(&announced)),
+    };
+    effects.extend([
+        ServiceEffect::GiveUp(task, outcome),
+        ServiceEffect::Report(MissionEvent::TaskGivenUp { task, outcome, reason, certificate: None }),
+        ServiceEffect::Supersede(Notice::Withdrawn { task }),
+    ]);
     Some(Done { task })
 }
 
@@ -543,55 +652,38 @@ fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> O
     end(point, effects, Outcome::InsufficientRobots, point.next_task(), reason)
 }
 
-fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
-    let (count, closed) = (point.errands().count(), point.closed.len());
-    let reason = match closed {
+/// No task is left. Where some have been given up, the outcome is that of the first of them.
+fn finish<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
+    let (count, closed, given_up) =
+        (point.errands().count(), point.closed.len(), point.given_up.len());
+    let over = closed.saturating_sub(given_up);
+    let serviced = count.saturating_sub(closed);
+    let mut reason = match closed {
         0 => format!("all {count} tasks are serviced"),
-        _ => format!(
-            "of {count} tasks {} are serviced, and {closed} have ended or been taken back",
-            count - closed.min(count)
-        ),
+        _ => format!("of {count} tasks {serviced} are serviced"),
     };
-    end(point, effects, Outcome::Serviced, None, reason)
+    if over > 0 {
+        reason.push_str(&format!(", and {over} have ended or been taken back"));
+    }
+    if given_up > 0 {
+        let tasks: Vec<usize> = point.given_up.iter().map(|&(task, _)| task).collect();
+        let names: Vec<usize> = tasks.iter().map(|&task| point.site.name_of_task(task)).collect();
+        reason.push_str(&format!("; no robot could service {}", phrase::named("task", &names)));
+    }
+    let outcome = point.given_up.first().map_or(Outcome::Serviced, |&(_, outcome)| outcome);
+    end(point, effects, outcome, None, reason)
 }
 
 fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
-    let name = point.site.name_of_task(task);
-    let absent: Vec<NodeId> = point.absent_robots().collect();
-    let cut_off: Vec<NodeId> = point.searchers().collect();
-    if !absent.is_empty() || !cut_off.is_empty() {
-        let why = match absent.is_empty() {
-            true => {
-                let cut_off = phrase::robots(&point.site.names_of(&cut_off), ["knows", "know"]);
-                format!("{cut_off} no way to an access point any more")
-            }
-            false => why_absent(&point.site.names_of(&absent)),
-        };
-        let reason = format!("no robot is left that can go to task {name}: {why}");
-        return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
-    }
-    if let Some(left) = point.access_points_left() {
-        let reason = format!(
-            "no robot of {} can lead a team to task {name}, and those of the others find no recruit",
-            phrase::named("access point", &left)
-        );
-        return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
-    }
-    let reason = format!(
-        "no robot can come within the service radius of task {name}: it lies in a wall, too near \
-         to one, or in a part of the workspace that no robot can enter"
-    );
-    Some(end(point, effects, Outcome::UnreachableTask, Some(task), reason))
+    let (outcome, reason) = point.why_no_bid(task);
+    Some(end(point, effects, outcome, Some(task), reason))
 }
 
 fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
-    let Announced { task, roster, .. } = place.announced.as_ref()?;
-    let missing = point.site.names_of(&point.unanswering(roster));
-    let name = point.site.name_of_task(*task);
-    let missing = phrase::robots(&missing, ["does", "do"]);
-    let reason = format!("the election for task {name} cannot end: {missing} not answer any more");
-    Some(end(point, effects, Outcome::Blocked, Some(*task), reason))
+    let announced = place.announced.as_ref()?;
+    let reason = point.why_unanswered(announced);
+    Some(end(point, effects, Outcome::Blocked, Some(announced.task), reason))
 }
 
 // ---- The automaton ---------------------------------------------------------------------------
@@ -642,8 +734,13 @@ fn no_robot<A: DataOf<Serving>>(guard: Guard) -> Row {
 }
 
 fn all_serviced<A: DataOf<Serving>>(guard: Guard) -> Row {
-    let name = "end the mission: serviced";
-    Transfer::new(ServiceEvent::AllServiced, guard, name, end_serviced::<A>)
+    let name = "end the mission: no task is left";
+    Transfer::new(ServiceEvent::AllServiced, guard, name, finish::<A>)
+}
+
+fn gives_up<A: DataOf<Serving> + KnowsTask>(guard: Guard) -> Row {
+    let name = "announce that the task is given up";
+    Transfer::where_known(ServiceEvent::GivesUp, guard, name, give_up::<A>)
 }
 
 /// The automaton of the service of the user's tasks.
@@ -676,6 +773,8 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(end_heard::<Done>())
         .carried_out(withdraws::<Electing>())
         .carried_out(withdraws::<UnderWay>())
+        .carried_out(gives_up::<Electing>(guards::gives_up_election()))
+        .carried_out(gives_up::<UnderWay>(guards::gives_up()))
         .carried_out(closes::<Gathering>())
         .carried_out(closes::<Electing>())
         .carried_out(closes::<UnderWay>())

@@ -157,8 +157,8 @@ fn messages() -> Vec<Message> {
     let segment = Segment::new(Point::new(0.1, 0.2), Point::new(1.0 / 3.0, 0.2));
     let number = RequestNumber { period: 3, number: 1 };
     let errands = [
-        Errand { position: Point::new(1.33, 1.42), lasts: None, withdrawn: true },
-        Errand { position: Point::new(1.6, 0.52), lasts: Some(90), withdrawn: false },
+        Errand { position: Point::new(1.33, 1.42), lasts: None, priority: 0, withdrawn: true },
+        Errand { position: Point::new(1.6, 0.52), lasts: Some(90), priority: -7, withdrawn: false },
     ];
     let part = GrantedPart { flow: 0.025, until: 15 };
     let mut messages = vec![
@@ -241,7 +241,7 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
 
 /// A user asks for a task at this place.
 fn request_for(position: Value) -> Value {
-    let errand = json!({"position": position, "lasts": null, "withdrawn": false});
+    let errand = json!({"position": position, "lasts": null, "priority": 0, "withdrawn": false});
     json!({"request": {"tasks": [errand], "continues": false}})
 }
 

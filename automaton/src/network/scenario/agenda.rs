@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 /// What a task that no robot can service means for the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[non_exhaustive]
 pub enum Unreachable {
     /// The task is given up: its team is dissolved, and the mission goes on with the others.
     #[default]
@@ -17,7 +16,6 @@ pub enum Unreachable {
 /// Which of the tasks that the user asks for is announced next. Ties go to the task that comes first in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[non_exhaustive]
 pub enum TaskOrder {
     /// The one that comes first in the file.
     #[default]

@@ -6,24 +6,23 @@
 use pleach_automaton::network::certificate::{
     Attempt, Because, Bound, Certificate, Hindrance, Other, Standing, Unreachable,
 };
-use pleach_automaton::network::record::{End, Outcome, Snapshot};
+use pleach_automaton::network::record::{Outcome, Snapshot};
 use pleach_discrete::network::Role;
 
 use super::Judge;
 use super::certificate::{AT_LIMIT, PASSAGE, SATURATED, SPENT, TOUCHED};
 use super::ground::Ground;
 use super::ledger::Stage;
-use super::terms::all_stay;
-use super::verdicts::{Trial, parent_of, tree_of};
+use super::verdicts::{Trial, missing, parent_of, tree_of};
 use crate::network::bound::Spans;
 
-/// The certificate of a mission that is given up.
-pub fn of(judge: &Judge, end: &End) -> Option<Certificate> {
+/// The certificate of a task that is given up, or of a mission.
+pub fn of(judge: &Judge, outcome: Outcome, task: Option<usize>) -> Option<Certificate> {
     let last = judge.previous.as_ref()?;
-    match end.outcome {
-        Outcome::UnreachableTask => unreachable(judge, end.task?).map(Certificate::Unreachable),
+    match outcome {
+        Outcome::UnreachableTask => unreachable(judge, task?).map(Certificate::Unreachable),
         Outcome::InsufficientRobots => {
-            bound(judge, end.task?).map(Certificate::Bound).or_else(|| Some(tried(judge, last)))
+            bound(judge).map(Certificate::Bound).or_else(|| Some(tried(judge, last)))
         }
         Outcome::Blocked if judge.ledger.stage() == Stage::Calling => Some(tried(judge, last)),
         Outcome::Blocked => Some(Certificate::Blocked { team: team(judge, last) }),
@@ -47,17 +46,15 @@ fn unreachable(judge: &Judge, task: usize) -> Option<Unreachable> {
     })
 }
 
-fn bound(judge: &Judge, task: usize) -> Option<Bound> {
-    if !all_stay(&judge.scenario, task + 1) {
-        return None;
-    }
-    let spans = Spans::of(&judge.scenario).ok()?;
-    let (least, robots) = (spans.least_robots(task + 1)?, judge.scenario.robot.len());
-    (least > robots).then(|| Bound {
-        length: spans.least_length(task + 1),
-        longest_link: judge.monitor.limits().longest_tree_link(),
+fn bound(judge: &Judge) -> Option<Bound> {
+    let tasks = judge.tasks_together();
+    let least = missing(&judge.scenario, &tasks)?;
+    let spans = Spans::as_the_crow_flies(&judge.scenario);
+    Some(Bound {
+        length: spans.least_length(&tasks),
+        longest_link: spans.longest_link(),
         least,
-        robots,
+        robots: judge.scenario.robot.len(),
     })
 }
 

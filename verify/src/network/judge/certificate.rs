@@ -35,13 +35,30 @@ pub const SPENT: f64 = 0.1;
 /// What is wrong with a claim, as a clause.
 type Complaint = Result<(), String>;
 
-/// Whether the certificate of an end shows that the mission had to end so.
+/// How a task or a mission is said to have ended, with the certificate of that.
+pub struct Claim<'a> {
+    /// How.
+    pub outcome: Outcome,
+    /// The task concerned.
+    pub task: Option<usize>,
+    /// The certificate, if it comes with one.
+    pub certificate: Option<&'a Certificate>,
+}
+
+impl<'a> Claim<'a> {
+    /// The claim of the end of a mission.
+    pub fn of(end: &'a End) -> Self {
+        Claim { outcome: end.outcome, task: end.task, certificate: end.certificate.as_ref() }
+    }
+}
+
+/// Whether the certificate of a claim shows that it has to be so.
 ///
 /// # Errors
 ///
 /// What it does not show.
-pub fn check(judge: &Judge, end: &End) -> Complaint {
-    let Some(certificate) = &end.certificate else {
+pub fn check(judge: &Judge, end: &Claim) -> Complaint {
+    let Some(certificate) = end.certificate else {
         return Err(format!("the outcome “{}” comes without a certificate", end.outcome.name()));
     };
     let Some(last) = &judge.previous else { return Ok(()) };
@@ -51,7 +68,7 @@ pub fn check(judge: &Judge, end: &End) -> Complaint {
             is_out_of_reach(judge, claim, end.task)
         }
         (Outcome::InsufficientRobots, Certificate::Bound(claim)) => {
-            takes_more(judge, claim, end.task)
+            takes_more(judge, claim)
         }
         (Outcome::InsufficientRobots | Outcome::Blocked, Certificate::Tried { attempts, team })
             if calls || judge.nobody_leads() =>
@@ -110,15 +127,14 @@ fn is_out_of_reach(judge: &Judge, claim: &Unreachable, task: Option<usize>) -> C
 
 // ---- Bounds ------------------------------------------------------------------------------------
 
-fn takes_more(judge: &Judge, claim: &Bound, task: Option<usize>) -> Complaint {
-    let tasks = task.map_or(0, |task| task + 1).min(judge.monitor.limits().tasks().len());
+fn takes_more(judge: &Judge, claim: &Bound) -> Complaint {
+    let tasks = &judge.tasks_together()[..];
     if !all_stay(&judge.scenario, tasks) {
         return Err("tasks are over that any tree is claimed to service".to_owned());
     }
     let robots = judge.scenario.robot.len();
-    let Ok(spans) = Spans::of(&judge.scenario) else { return Ok(()) };
-    let longest_link = judge.monitor.limits().longest_tree_link();
-    equal("the longest link", claim.longest_link, longest_link, SLACK)?;
+    let spans = Spans::as_the_crow_flies(&judge.scenario);
+    equal("the longest link", claim.longest_link, spans.longest_link(), SLACK)?;
     let length = spans.least_length(tasks);
     equal("the least length of a tree", claim.length, length, SLACK * length.max(1.0))?;
     let least = spans.least_robots(tasks);

@@ -34,6 +34,7 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
         MissionEvent::TaskAnnounced { task: it }
         | MissionEvent::TaskEnded { task: it }
         | MissionEvent::TaskWithdrawn { task: it }
+        | MissionEvent::TaskGivenUp { task: it, .. }
         | MissionEvent::ElectionRepeated { task: it } => {
             task = Some(*it);
         }

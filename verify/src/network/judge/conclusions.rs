@@ -54,6 +54,8 @@ pub struct Conclusions {
     exchanging: Vec<(usize, usize)>,
     /// The step at which the robots first knew that the mission has ended.
     ended: Option<usize>,
+    /// The last step at which a mission that had been given up went on: robots hear so one after the other.
+    resumed: Option<usize>,
     /// The step since which all robots have known that, and none of them may move.
     at_rest: Option<usize>,
 }
@@ -77,6 +79,7 @@ impl Conclusions {
             changed: Vec::new(),
             exchanging: Vec::new(),
             ended: None,
+            resumed: None,
             at_rest: None,
         }
     }
@@ -100,10 +103,14 @@ impl Conclusions {
             MissionEvent::TaskWithdrawn { .. } | MissionEvent::ElectionRepeated { .. } => {
                 self.forget_early();
             }
+            MissionEvent::TaskGivenUp { .. } => {
+                self.forget_early();
+                self.resume(step);
+            }
             // So may the mission be, until robots are free.
             MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => {
                 self.forget_early();
-                (self.ended, self.at_rest, self.ahead) = (None, None, None);
+                self.resume(step);
             }
             _ => {}
         }
@@ -129,6 +136,11 @@ impl Conclusions {
                 Err(Dispute::of(Property::ActiveTeam, &[robot], sentence))
             }
         }
+    }
+
+    /// A mission that has been given up goes on.
+    fn resume(&mut self, step: usize) {
+        (self.ended, self.at_rest, self.ahead, self.resumed) = (None, None, None, Some(step));
     }
 
     fn forget_early(&mut self) {
@@ -205,6 +217,10 @@ impl Conclusions {
         posts::tasks_agree(snapshot)?;
         posts::closings_are_told(ledger, scene)?;
         // Robots that have given up hold no team and no place of Σ any more.
+        let has_resumed = self.resumed.is_some_and(|step| step + self.patience >= snapshot.step);
+        if snapshot.phase == Phase::Ended && has_resumed {
+            return Ok(());
+        }
         if snapshot.phase == Phase::Ended {
             self.ended.get_or_insert(snapshot.step);
             self.note_rest(snapshot);

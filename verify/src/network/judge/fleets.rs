@@ -172,6 +172,32 @@ impl<'a> JudgeOfFleets<'a> {
         judge.at_its_end().account(&end)?.renumbered(judge.fleet.outward())
     }
 
+    /// An event, which comes with an account of why if it tells that a task is given up.
+    pub(super) fn explain(
+        &self,
+        event: &MissionEvent,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+    ) -> MissionEvent {
+        let explained = || {
+            let MissionEvent::TaskGivenUp { task, .. } = *event else { return None };
+            let judge = self.judges.iter().find(|it| it.fleet.inward().task(task).is_some())?;
+            let own = event.renumbered(judge.fleet.inward())?;
+            let events = self.distribute(events).ok()?;
+            let (parts, at) = (self.divide(snapshot).ok()?, self.place_of(judge));
+            let (part, events) = (&parts.get(at)?.0, events.get(at)?);
+            let place = events.iter().position(|it| *it == own)?;
+            let explained = judge.referee.explain(part, events);
+            explained.get(place)?.renumbered(judge.fleet.outward())
+        };
+        explained().unwrap_or_else(|| event.clone())
+    }
+
+    fn place_of(&self, judge: &FleetJudge) -> usize {
+        let is_it = |it: &FleetJudge| it.access_point() == judge.access_point();
+        self.judges.iter().position(is_it).unwrap_or_default()
+    }
+
     /// How near the missions have come to their bounds so far.
     pub const fn extremes(&self) -> &Extremes {
         &self.extremes

@@ -67,6 +67,13 @@ impl<'a> Ground<'a> {
         self.space.distance(self.place(node, snapshot), self.space.nearest(task))
     }
 
+    /// The length of the shortest way from one of these places to the place from which a task is serviced.
+    pub fn way_between(&self, roots: &[Point], task: Point) -> f64 {
+        let to = self.nearest_reached(task).unwrap_or_else(|| self.space.nearest(task));
+        let ways = roots.iter().map(|&from| self.space.distance(self.space.nearest(from), to));
+        ways.fold(f64::INFINITY, f64::min)
+    }
+
     fn place(&self, node: usize, snapshot: &Snapshot) -> Point {
         let robots = snapshot.positions.len();
         let place = match node.checked_sub(robots) {

@@ -18,8 +18,8 @@ use crate::network::team;
 pub struct Ledger {
     /// The role of every robot.
     pub roles: Vec<Role>,
-    /// How many tasks are announced; they are numbered in this order.
-    pub announced: usize,
+    /// The tasks that have been announced.
+    pub announced: BTreeSet<usize>,
     /// The tasks serviced, each with the robot that holds it.
     pub serviced: BTreeMap<usize, usize>,
     /// The tasks that are over: they have ended, or been taken back.
@@ -86,7 +86,7 @@ impl Ledger {
     pub fn new(robots: usize) -> Self {
         Ledger {
             roles: vec![Role::Redundant; robots],
-            announced: 0,
+            announced: BTreeSet::new(),
             serviced: BTreeMap::new(),
             closed: BTreeSet::new(),
             discharging: BTreeMap::new(),
@@ -107,7 +107,7 @@ impl Ledger {
     /// The task that is pursued: the one announced that is neither serviced nor over.
     pub fn task(&self) -> Option<usize> {
         let is_done = |task: &usize| self.serviced.contains_key(task) || self.closed.contains(task);
-        (0..self.announced).find(|task| !is_done(task))
+        self.announced.iter().copied().find(|task| !is_done(task))
     }
 
     /// What the mission is at.
@@ -209,29 +209,31 @@ impl Ledger {
             MissionEvent::TaskServiced { task, robot } => self.service(*task, *robot),
             MissionEvent::TaskEnded { task } => self.end(*task),
             MissionEvent::TaskWithdrawn { task } => self.withdraw(*task),
+            MissionEvent::TaskGivenUp { task, .. } => self.give_up(*task),
             MissionEvent::DutiesExchanged { mover, parked } => self.exchange(*mover, *parked),
             MissionEvent::Reattached { .. } | MissionEvent::RouteInfeasible { .. } => Ok(()),
             other => dispute(&[], format!("the judge does not know the event {other:?}")),
         }
     }
 
-    /// Tasks are announced in their order, each when the one before is serviced, but for those that are over.
+    /// Tasks are announced one after the other, each when the one before is serviced or over.
     fn announce(&mut self, task: usize) -> Result<(), Dispute> {
-        let pursued = self.task();
-        let next = (self.announced..).find(|task| !self.closed.contains(task)).unwrap_or_default();
-        if task != next || pursued.is_some() {
-            return dispute(
-                &[],
-                match pursued {
-                    Some(pursued) => {
-                        format!("task {task} is announced while task {pursued} is being pursued")
-                    }
-                    None => format!("task {task} is announced, and task {next} is the next"),
-                },
-            );
+        if let Some(pursued) = self.task() {
+            let sentence =
+                format!("task {task} is announced while task {pursued} is being pursued");
+            return dispute(&[], sentence);
         }
-        self.announced = task + 1;
+        if self.closed.contains(&task) || !self.announced.insert(task) {
+            let sentence = format!("task {task} is announced, and it has been before or is over");
+            return dispute(&[], sentence);
+        }
         Ok(())
+    }
+
+    /// No robot can service the task that is pursued: the team is dissolved.
+    fn give_up(&mut self, task: usize) -> Result<(), Dispute> {
+        self.expect_pursued(task, "robots give up")?;
+        self.withdraw(task)
     }
 
     /// A task has been serviced for as long as it was to be.
@@ -289,7 +291,7 @@ impl Ledger {
     /// pursued again.
     fn reannounce(&mut self, task: usize, gone: &[usize], joined: &[usize]) -> Result<(), Dispute> {
         let is_pursued = self.task().is_none_or(|pursued| pursued == task);
-        let is_over = task >= self.announced || self.closed.contains(&task);
+        let is_over = !self.announced.contains(&task) || self.closed.contains(&task);
         // Robots of a task that is over may be free now.
         let has_cause = !gone.is_empty() || !joined.is_empty() || !self.closed.is_empty();
         if is_over || !is_pursued || !has_cause || gone.iter().any(|robot| joined.contains(robot)) {
@@ -297,7 +299,7 @@ impl Ledger {
                 "task {task} is announced again without robots {gone:?} and to robots {joined:?}, while {} is \
                  pursued and {} tasks have been announced",
                 task_or_none(self.task()),
-                self.announced
+                self.announced.len()
             );
             return dispute(gone, sentence);
         }
@@ -613,6 +615,7 @@ const fn is_told_by_access_point(event: &MissionEvent) -> bool {
             | MissionEvent::TaskReannounced { .. }
             | MissionEvent::TaskEnded { .. }
             | MissionEvent::TaskWithdrawn { .. }
+            | MissionEvent::TaskGivenUp { .. }
     )
 }
 

@@ -51,6 +51,7 @@ use super::monitor::Monitor;
 use super::property::Property;
 use super::violation::{Instant, Violation};
 pub(super) use clock::Clock;
+use certificate::Claim;
 use conclusions::Conclusions;
 pub use fleets::JudgeOfFleets;
 use ground::Ground;
@@ -60,7 +61,6 @@ pub use referee::{Referee, judged_faults};
 pub use safety::{Safety, relayed};
 pub(super) use tasks::TaskClaims;
 use terms::Terms;
-pub use verdicts::missing;
 use verdicts::{Trial, Tried};
 pub use walk::Walk;
 
@@ -281,11 +281,57 @@ impl<'a> Judge<'a> {
             (told, _) => told?,
         }
         self.stretches_for_want_of_a_robot(event)?;
+        self.comes_next(event, snapshot)?;
+        self.has_to_be_given_up(event)?;
         self.terms.clone().enter(event, snapshot.step)?;
         self.calls_for_want_of_length(event, snapshot)?;
         let mut ledger = self.ledger.clone();
         ledger.enter(event)?;
         Ok(ledger)
+    }
+
+    /// Tasks are announced in the order of the mission.
+    fn comes_next(&self, event: &MissionEvent, snapshot: &Snapshot) -> Result<(), Dispute> {
+        let MissionEvent::TaskAnnounced { task } = *event else { return Ok(()) };
+        let earlier = self.terms.unfinished_before(task, snapshot.step);
+        match earlier.or_else(|| self.nearer_than(task, snapshot.step)) {
+            None => Ok(()),
+            Some(other) => {
+                let sentence = format!("task {task} is announced, and task {other} is the next");
+                Err(Dispute::of(Property::Events, &[], sentence))
+            }
+        }
+    }
+
+    /// With `order = "nearest"`, a task that is clearly nearer to the access points and the tasks that are serviced.
+    fn nearer_than(&self, task: usize, step: usize) -> Option<usize> {
+        let rivals = self.terms.rivals_of(task, step);
+        let limits = self.monitor.limits();
+        let ground = Ground::of(&self.scenario, limits).filter(|_| !rivals.is_empty())?;
+        let serviced = self.terms.serviced().map(|task| limits.tasks()[task]);
+        let roots: Vec<Point> = limits.access_points().iter().copied().chain(serviced).collect();
+        let way = |task: usize| ground.way_between(&roots, limits.tasks()[task]);
+        let least = way(task) - ground.tolerance();
+        rivals.into_iter().find(|&rival| way(rival) < least)
+    }
+
+    /// A task is given up where no robot could service it.
+    fn has_to_be_given_up(&self, event: &MissionEvent) -> Result<(), Dispute> {
+        let MissionEvent::TaskGivenUp { task, outcome, certificate, .. } = event else {
+            return Ok(());
+        };
+        let claim = Claim {
+            outcome: *outcome,
+            task: Some(*task),
+            certificate: certificate.as_deref(),
+        };
+        let complaint = certificate::check(self, &claim).err();
+        match complaint.or_else(|| self.refutation(*outcome)) {
+            None => Ok(()),
+            Some(sentence) => {
+                Err(Dispute::of(Property::Outcome, &[], format!("task {task}: {sentence}")))
+            }
+        }
     }
 
     /// A team stretches its links where no robot could have come.
@@ -386,12 +432,14 @@ impl<'a> Judge<'a> {
         let tasks = self.monitor.limits().tasks().len();
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
         let complaint = self.clock.contradiction(end, last, (done, tasks));
-        let complaint = complaint.or_else(|| self.terms.contradiction(end.outcome));
-        let is_done = done == tasks && self.terms.contradiction(Outcome::Serviced).is_none();
+        let complaint = complaint.or_else(|| self.terms.contradiction(end));
+        let is_done = done == tasks && self.terms.awaits_no_end();
         let complaint = complaint.or_else(|| match end.outcome {
             _ if self.conclusions.overdue(now.step, self.settles(end.outcome)) => {
                 Some("the robots knew that the mission had ended, and it went on".to_owned())
             }
+            // Each of these tasks has come with its own certificate.
+            _ if end.outcome.is_given_up() && !end.tasks.is_empty() => None,
             Outcome::InsufficientRobots | Outcome::UnreachableTask | Outcome::Blocked
                 if end.task.is_some() && end.task != self.ledger.task() =>
             {
@@ -406,7 +454,8 @@ impl<'a> Judge<'a> {
                 Some(format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
             }
             _ if end.outcome.is_given_up() => {
-                certificate::check(self, end).err().or_else(|| self.refutation(end))
+                let complaint = certificate::check(self, &Claim::of(end)).err();
+                complaint.or_else(|| self.refutation(end.outcome))
             }
             _ => None,
         });
@@ -424,7 +473,30 @@ impl<'a> Judge<'a> {
 
     /// An observer's account of why the mission ended: what its end should come with.
     pub fn account(&self, end: &End) -> Option<Certificate> {
-        account::of(self, end)
+        account::of(self, end.outcome, end.task)
+    }
+
+    /// The same of why a task is given up in the period that ends with this snapshot, among these events.
+    pub fn account_of_task(
+        &self,
+        task: usize,
+        outcome: Outcome,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+    ) -> Option<Certificate> {
+        let is_before = |event: &&MissionEvent| {
+            !matches!(event, MissionEvent::TaskGivenUp { .. } | MissionEvent::TaskAnnounced { .. })
+        };
+        let before: Vec<MissionEvent> = events.iter().filter(is_before).cloned().collect();
+        let mut then = self.clone();
+        // What cannot be entered is disputed when the period is judged.
+        let _ = then.enter_all(&before, snapshot);
+        account::of(&then, outcome, Some(task))
+    }
+
+    /// The tasks that are serviced at the same time as the one that is pursued.
+    fn tasks_together(&self) -> Vec<usize> {
+        self.ledger.serviced.keys().copied().chain(self.ledger.task()).collect()
     }
 
     /// The call for a recruit with which the mission ended, if it ended with one.
@@ -455,13 +527,12 @@ impl<'a> Judge<'a> {
     }
 
     /// Why robots are not too few although the mission ended for that reason, as a clause.
-    fn refutation(&self, end: &End) -> Option<String> {
-        if end.outcome != Outcome::InsufficientRobots {
+    fn refutation(&self, outcome: Outcome) -> Option<String> {
+        if outcome != Outcome::InsufficientRobots {
             return None;
         }
         let overlooked = self.tried.overlooked(&self.ledger, self.instant_of_last_call()?)?;
-        let announced = self.ledger.task().map_or(0, |task| task + 1);
-        match verdicts::missing(&self.scenario, announced) {
+        match verdicts::missing(&self.scenario, &self.tasks_together()) {
             Some(_) => None,
             None => Some(format!("the mission ends for want of a robot, but {overlooked}")),
         }

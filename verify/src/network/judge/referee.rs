@@ -110,6 +110,25 @@ impl<'a> Referee<'a> {
         }
     }
 
+    /// The same events, where each task that is given up comes with an account of why, if the mission is judged by all
+    /// definitions.
+    pub fn explain(&self, snapshot: &Snapshot, events: &[MissionEvent]) -> Vec<MissionEvent> {
+        let explain = |event: &MissionEvent| match (event, self) {
+            (MissionEvent::TaskGivenUp { task, outcome, reason, .. }, Referee::Whole(judge)) => {
+                let certificate = judge.account_of_task(*task, *outcome, snapshot, events);
+                MissionEvent::TaskGivenUp {
+                    task: *task,
+                    outcome: *outcome,
+                    reason: reason.clone(),
+                    certificate: certificate.map(Box::new),
+                }
+            }
+            (_, Referee::Fleets(fleets)) => fleets.explain(event, snapshot, events),
+            _ => event.clone(),
+        };
+        events.iter().map(explain).collect()
+    }
+
     /// How near the mission has come to its bounds so far.
     pub fn extremes(&self) -> &Extremes {
         match self {

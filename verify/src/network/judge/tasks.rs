@@ -71,7 +71,7 @@ impl TaskClaims {
                 self.runs(robot, snapshot, || format!("robot {robot} services task {task}"))?;
             }
         }
-        self.announcements_follow(events)?;
+        self.announcements_follow(events, snapshot.step)?;
         for &(task, robot) in &snapshot.serviced {
             let clause = || format!("robot {robot} is said to service task {task}");
             self.runs(robot, snapshot, clause)?;
@@ -115,13 +115,13 @@ impl TaskClaims {
     }
 
     /// Tasks are announced one after another, in one control period where they are serviced at once.
-    fn announcements_follow(&self, events: &[MissionEvent]) -> Result<(), Dispute> {
+    fn announcements_follow(&self, events: &[MissionEvent], step: usize) -> Result<(), Dispute> {
         let announced = events.iter().filter_map(|event| match *event {
             MissionEvent::TaskAnnounced { task } => Some(task),
             _ => None,
         });
         for task in announced {
-            if let Some(before) = self.terms.unfinished_before(task) {
+            if let Some(before) = self.terms.unfinished_before(task, step) {
                 let sentence =
                     format!("task {task} is announced, and task {before} has not been serviced");
                 return Err(Dispute::of(Property::Events, &[], sentence));
@@ -148,7 +148,7 @@ impl TaskClaims {
         };
         let contradiction = clock
             .contradiction(end, self.last, (self.terms.done(), tasks))
-            .or_else(|| self.terms.contradiction(end.outcome))
+            .or_else(|| self.terms.contradiction(end))
             .or_else(abandoned)
             .or_else(|| self.needless(end, tasks));
         match contradiction {
@@ -161,7 +161,7 @@ impl TaskClaims {
     /// that it has been serviced.
     fn needless(&self, end: &End, tasks: usize) -> Option<String> {
         let is_done = self.terms.done() == tasks && self.terms.pursued().is_none();
-        (self.all_run && end.outcome.is_given_up() && is_done)
+        (self.all_run && end.outcome.is_given_up() && is_done && end.tasks.is_empty())
             .then(|| format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
     }
 }

@@ -2,22 +2,29 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pleach_automaton::network::record::{MissionEvent, Outcome};
-use pleach_automaton::network::scenario::{Scenario, Task};
+use pleach_automaton::network::record::{End, MissionEvent, Outcome};
+use pleach_automaton::network::scenario::{Scenario, Settings, Task, TaskOrder, Unreachable};
 
 use super::Dispute;
 use crate::network::property::Property;
+
+/// Control periods after which an access point has received a task that the user asks for.
+const NEWS_OF_TASKS: usize = 2;
 
 /// The terms on which a user wants its tasks, and what has become of them.
 #[derive(Clone, Debug)]
 pub(super) struct Terms {
     tasks: Vec<Task>,
+    order: TaskOrder,
+    unreachable: Unreachable,
     announced: BTreeSet<usize>,
     /// The task that has been announced last, or again.
     last: Option<usize>,
     /// The tasks that are serviced, each with the step from which on it has been since it was announced last.
     serviced: BTreeMap<usize, usize>,
     closed: BTreeSet<usize>,
+    /// Those of them that no robot could service, with how they ended.
+    given_up: Vec<(usize, Outcome)>,
     /// The tasks that have ever been serviced.
     begun: BTreeSet<usize>,
     /// Whether the access point that announces tasks has been absent. One that begins again has forgotten what it
@@ -28,12 +35,20 @@ pub(super) struct Terms {
 
 impl Terms {
     pub(super) fn of(scenario: &Scenario) -> Self {
+        let settings = Settings::resolve(scenario);
+        Terms::with(scenario.task.clone(), settings.order, settings.unreachable)
+    }
+
+    fn with(tasks: Vec<Task>, order: TaskOrder, unreachable: Unreachable) -> Self {
         Terms {
-            tasks: scenario.task.clone(),
+            tasks,
+            order,
+            unreachable,
             announced: BTreeSet::new(),
             last: None,
             serviced: BTreeMap::new(),
             closed: BTreeSet::new(),
+            given_up: Vec::new(),
             begun: BTreeSet::new(),
             has_forgotten: false,
         }
@@ -80,6 +95,16 @@ impl Terms {
                 };
                 not_before(step, due, || format!("task {task} is given up"), "taken back")?;
                 self.close(task, "is taken back")
+            }
+            MissionEvent::TaskGivenUp { task, outcome, .. } => {
+                if self.unreachable == Unreachable::End {
+                    return dispute(format!(
+                        "task {task} is given up and the mission goes on, and mission.unreachable is \"end\""
+                    ));
+                }
+                self.given_up.push((task, outcome));
+                self.close(task, "is given up")?;
+                self.is_announced(task, || format!("task {task} is given up"))
             }
             MissionEvent::TaskEnded { task } => {
                 let Some(lasts) = self.tasks[task].lasts else {
@@ -136,11 +161,51 @@ impl Terms {
         self.last.filter(|&task| self.is_open(task))
     }
 
-    /// A task before this one that is neither serviced nor over: tasks are announced in their order. An access point
-    /// that has forgotten what it announced need not announce all of them.
-    pub(super) fn unfinished_before(&self, task: usize) -> Option<usize> {
-        let counts = |other: &usize| !self.has_forgotten || self.announced.contains(other);
-        (0..task).filter(counts).find(|&other| self.is_open(other))
+    /// A task that is neither serviced nor over and comes before this one by its number or priority. An access point that
+    /// has forgotten what it announced need not announce all of them.
+    pub(super) fn unfinished_before(&self, task: usize, step: usize) -> Option<usize> {
+        let rank = |task: usize| match self.order {
+            TaskOrder::File => Some((0, task)),
+            TaskOrder::Priority => Some((-self.tasks[task].priority.unwrap_or_default(), task)),
+            TaskOrder::Nearest => None,
+        };
+        let own = rank(task)?;
+        let counts = |other: &usize| {
+            let is_remembered = !self.has_forgotten || self.announced.contains(other);
+            let is_before = rank(*other).is_some_and(|rank| rank < own);
+            is_before && is_remembered && (*other < task || self.is_known_at(*other, step))
+        };
+        (0..self.tasks.len()).filter(counts).find(|&other| self.is_open(other))
+    }
+
+    /// Whether the access point has received a task by this step.
+    fn is_known_at(&self, task: usize, step: usize) -> bool {
+        self.tasks[task].asked_for() as usize + NEWS_OF_TASKS <= step
+    }
+
+    /// With `order = "nearest"`, the tasks that may be announced instead of this one: they have been asked for and are
+    /// neither serviced nor over.
+    pub(super) fn rivals_of(&self, task: usize, step: usize) -> Vec<usize> {
+        let is_rival = |other: &usize| {
+            let other = *other;
+            other != task && self.is_open(other) && self.is_known_at(other, step)
+        };
+        match self.order {
+            TaskOrder::Nearest => (0..self.tasks.len()).filter(is_rival).collect(),
+            TaskOrder::File | TaskOrder::Priority => Vec::new(),
+        }
+    }
+
+    /// The tasks that are serviced.
+    pub(super) fn serviced(&self) -> impl Iterator<Item = usize> {
+        self.serviced.keys().copied()
+    }
+
+    /// The tasks that no robot could service, ascending.
+    pub(super) fn given_up(&self) -> Vec<usize> {
+        let mut tasks: Vec<usize> = self.given_up.iter().map(|&(task, _)| task).collect();
+        tasks.sort_unstable();
+        tasks
     }
 
     /// A task that should have been closed more than `patience` steps ago, in a sentence: one that was
@@ -168,10 +233,31 @@ impl Terms {
         (0..self.tasks.len()).filter(|&task| !self.is_open(task)).count()
     }
 
-    /// What is missing where a mission ends with this outcome, in a clause.
-    pub(super) fn contradiction(&self, outcome: Outcome) -> Option<String> {
-        let open = |task: &usize| self.tasks[*task].lasts.is_some() && !self.closed.contains(task);
-        let task = (0..self.tasks.len()).find(open).filter(|_| outcome == Outcome::Serviced)?;
+    /// Whether no task is to end that has not ended.
+    pub(super) fn awaits_no_end(&self) -> bool {
+        self.task_to_end().is_none()
+    }
+
+    fn task_to_end(&self) -> Option<usize> {
+        let is_to_end =
+            |task: &usize| self.tasks[*task].lasts.is_some() && !self.closed.contains(task);
+        (0..self.tasks.len()).find(is_to_end)
+    }
+
+    /// What contradicts the end of a mission, in a clause.
+    pub(super) fn contradiction(&self, end: &End) -> Option<String> {
+        let outcome = end.outcome;
+        if end.tasks != self.given_up() && !self.has_forgotten {
+            return Some(format!(
+                "the end names tasks {:?} as given up, and tasks {:?} were",
+                end.tasks,
+                self.given_up()
+            ));
+        }
+        if let (Outcome::Serviced, Some((task, _))) = (outcome, self.given_up.first()) {
+            return Some(format!("the outcome is “serviced”, and task {task} was given up"));
+        }
+        let task = self.task_to_end().filter(|_| outcome == Outcome::Serviced)?;
         Some(format!("the outcome is “serviced”, and task {task} is to end and has not ended"))
     }
 }
@@ -181,10 +267,10 @@ fn end_of(since: usize, lasts: u32) -> u32 {
     u32::try_from(since).unwrap_or(u32::MAX).saturating_add(lasts)
 }
 
-/// Whether the first `count` tasks stay once they are serviced: then all of them are serviced at the same time.
-pub fn all_stay(scenario: &Scenario, count: usize) -> bool {
+/// Whether these tasks stay once they are serviced: then all of them are serviced at the same time.
+pub fn all_stay(scenario: &Scenario, tasks: &[usize]) -> bool {
     let stays = |task: &Task| task.lasts.is_none() && task.withdrawn.is_none();
-    scenario.task.iter().take(count).all(stays)
+    tasks.iter().all(|&task| stays(&scenario.task[task]))
 }
 
 fn not_before(
@@ -208,15 +294,7 @@ mod tests {
     use super::*;
 
     fn terms(tasks: &[Task]) -> Terms {
-        Terms {
-            tasks: tasks.to_vec(),
-            announced: BTreeSet::new(),
-            last: None,
-            serviced: BTreeMap::new(),
-            closed: BTreeSet::new(),
-            begun: BTreeSet::new(),
-            has_forgotten: false,
-        }
+        Terms::with(tasks.to_vec(), TaskOrder::File, Unreachable::Skip)
     }
 
     fn complaint(terms: &mut Terms, event: MissionEvent, step: usize) -> String {

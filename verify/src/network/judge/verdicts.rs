@@ -49,7 +49,9 @@ impl Tried {
     /// An event, with the ledger before it and the snapshots before and after.
     pub fn enter(&mut self, event: &MissionEvent, ledger: &Ledger, scenes: [Option<&Snapshot>; 2]) {
         match event {
-            MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => {
+            MissionEvent::TaskAnnounced { .. }
+            | MissionEvent::TaskReannounced { .. }
+            | MissionEvent::TaskGivenUp { .. } => {
                 *self = Tried::default();
             }
             MissionEvent::LeaderElected { robot, .. } => {
@@ -132,13 +134,13 @@ impl Tried {
     }
 }
 
-/// How many robots the tasks announced so far take at least, if that is more than there are; none where some of
-/// them may be over before the last is announced.
-pub fn missing(scenario: &ValidScenario, announced: usize) -> Option<usize> {
-    if !all_stay(scenario, announced) {
+/// How many robots these tasks take at least, if that is more than there are; none where some of them may be over
+/// before the last is announced.
+pub fn missing(scenario: &ValidScenario, tasks: &[usize]) -> Option<usize> {
+    if !all_stay(scenario, tasks) {
         return None;
     }
-    let least = Spans::of(scenario).ok()?.least_robots(announced)?;
+    let least = Spans::as_the_crow_flies(scenario).least_robots(tasks)?;
     (least > scenario.robot.len()).then_some(least)
 }
 
@@ -168,7 +170,7 @@ mod tests {
     /// Robot 1 leads alone and calls for a recruit; robot 0 services task 0.
     fn calling() -> Ledger {
         let mut ledger = Ledger::new(4);
-        ledger.announced = 2;
+        ledger.announced = [0, 1].into();
         ledger.serviced.insert(0, 0);
         (ledger.leader, ledger.primary_team, ledger.calls) = (Some(1), vec![1], true);
         ledger
