@@ -374,13 +374,43 @@ impl Site {
         self.free_space.detour(from, to, discs).map(|way| way.length)
     }
 
-    /// The geodesic length of a link, or infinity when it is longer than any link of the tree.
-    pub fn walk(&self, from: Point, to: Point) -> f64 {
-        let straight = (to - from).norm();
-        if straight > REACH_OF_INTEREST * self.stretched.hard {
-            return f64::INFINITY;
+    /// The length of a link as the tree counts it: how far it has to reach so that a robot can walk from one end to the
+    /// other without losing it. That is the distance of its ends, unless the [way](Geodesic::reach) around walls leads
+    /// farther from one of them. Infinite if no way leads there.
+    pub fn link_length(&self, from: Point, to: Point) -> f64 {
+        #[cfg(feature = "abstraction")]
+        if let Some(measure) = &self.measure {
+            return measure.distance(from, to);
         }
-        self.distance(from, to)
+        self.free_space.link_reach(from, to)
+    }
+
+    /// The length of a link, or infinity when that is longer than any link of the tree.
+    pub fn walk(&self, from: Point, to: Point) -> f64 {
+        match (to - from).norm() > REACH_OF_INTEREST * self.stretched.hard && !self.is_graph() {
+            true => f64::INFINITY,
+            false => self.link_length(from, to),
+        }
+    }
+
+    /// Whether a robot that walks from one of these access points to the other is within this distance of one of them all
+    /// along.
+    pub(super) fn are_within_changeover(&self, one: Point, other: Point, reach: f64) -> bool {
+        #[cfg(feature = "abstraction")]
+        if let Some(measure) = &self.measure {
+            return measure.distance(one, other) <= 2.0 * reach;
+        }
+        self.free_space.geodesic(one, other).is_some_and(|way| way.gap(one) <= reach)
+    }
+
+    /// How many links lead from one place to within `rest` of another along the shortest way, each as long as it may be.
+    pub fn links_between(&self, from: Point, to: Point, longest: f64, rest: f64) -> f64 {
+        #[cfg(feature = "abstraction")]
+        if let Some(measure) = &self.measure {
+            return ((measure.distance(from, to) - rest).max(0.0) / longest).ceil();
+        }
+        let way = self.free_space.geodesic(from, to);
+        way.map_or(f64::INFINITY, |way| f64::from(way.links(from, longest, rest)))
     }
 }
 
@@ -388,6 +418,6 @@ impl Site {
 /// a full clearance the way back could lead through a wall.
 const REACH: f64 = 0.99;
 
-/// Links longer than this many times d_hard are never measured along geodesics: they cannot be
+/// Links longer than this many times d_hard are never measured around walls: they cannot be
 /// links of the tree, nor become such within a period.
 const REACH_OF_INTEREST: f64 = 1.5;

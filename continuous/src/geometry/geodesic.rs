@@ -27,10 +27,111 @@ impl Geodesic {
         Geodesic { length, waypoints }
     }
 
+    /// How far a link has to reach for a robot to walk this path, which begins at `start`, from either end of the link to
+    /// the other and never be farther than that from where it goes or comes from: the largest distance of a point of
+    /// the path to one of its ends. At least their distance, and at most the length of the path.
+    pub fn reach(&self, start: Point) -> f64 {
+        let goal = self.waypoints.last().copied().unwrap_or(start);
+        // The distance to a point is convex along a segment, and so largest at a waypoint.
+        let reaches = self.waypoints.iter().map(|&at| (at - start).norm().max((at - goal).norm()));
+        reaches.fold(0.0, f64::max)
+    }
+
+    /// The largest distance of a point of this path, which begins at `start`, to the nearer one of its ends: how far two
+    /// nodes there have to reach for a robot that walks the path to be in reach of one of them all along.
+    pub fn gap(&self, start: Point) -> f64 {
+        let goal = self.waypoints.last().copied().unwrap_or(start);
+        let nearer = |at: Point| (at - start).norm().min((at - goal).norm());
+        // Along a segment it is largest at an end or where both distances are the same.
+        let middle = (start - goal).norm_squared() / 2.0;
+        let gap = |segment: Segment| {
+            let (offset, slope) =
+                ((segment.from - goal).dot(&(start - goal)), segment.vector().dot(&(start - goal)));
+            let level = ((middle - offset) / slope).clamp(0.0, 1.0);
+            let level = if level.is_nan() { segment.from } else { segment.at(level) };
+            nearer(segment.from).max(nearer(segment.to)).max(nearer(level))
+        };
+        self.segments(start).map(gap).fold(0.0, f64::max)
+    }
+
+    /// How many links lead along this path, which begins at `start`, to within `rest` of its end, where each is taken as
+    /// long as it may be: up to where the path leaves the disc of radius `longest` around the beginning of the link.
+    pub fn links(&self, start: Point, longest: f64, rest: f64) -> u32 {
+        let (mut from, mut path) = (start, self.without_end(start, rest));
+        let mut links = 0;
+        while path.length > 0.0 && links < MOST_LINKS {
+            (from, path) = path.after(from, path.covered(from, longest));
+            links += 1;
+        }
+        links
+    }
+
+    /// The path without its last piece of this length; no longer than its start where it is shorter.
+    fn without_end(&self, start: Point, rest: f64) -> Geodesic {
+        let kept = (self.length - rest).max(0.0);
+        let mut walked = 0.0;
+        let mut waypoints = Vec::with_capacity(self.waypoints.len());
+        for segment in self.segments(start) {
+            let length = segment.length();
+            if walked + length >= kept {
+                waypoints.push(segment.at(share(kept - walked, length)));
+                break;
+            }
+            walked += length;
+            waypoints.push(segment.to);
+        }
+        Geodesic::new(start, waypoints)
+    }
+
+    /// How much of the path is within `longest` of its start, up to where it leaves that disc first.
+    fn covered(&self, start: Point, longest: f64) -> f64 {
+        let mut walked = 0.0;
+        for segment in self.segments(start) {
+            match exit_of_disc(&segment, start, longest) {
+                Some(at) => return walked + at * segment.length(),
+                None => walked += segment.length(),
+            }
+        }
+        self.length
+    }
+
+    /// The rest of the path after this length, with where it begins.
+    fn after(&self, start: Point, length: f64) -> (Point, Geodesic) {
+        let mut walked = 0.0;
+        for (index, segment) in self.segments(start).enumerate() {
+            let end = walked + segment.length();
+            if end > length {
+                let from = segment.at(share(length - walked, segment.length()));
+                return (from, Geodesic::new(from, self.waypoints[index..].to_vec()));
+            }
+            walked = end;
+        }
+        let end = self.waypoints.last().copied().unwrap_or(start);
+        (end, Geodesic::new(end, vec![end]))
+    }
+
     /// The segments of the path, which begins at `start`.
     pub fn segments(&self, start: Point) -> impl Iterator<Item = Segment> {
         segments(start, &self.waypoints)
     }
+}
+
+/// More links than any path takes.
+const MOST_LINKS: u32 = 1_000_000;
+
+fn share(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { (part / whole).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// Where, as a share, a segment that begins in the disc leaves it.
+fn exit_of_disc(segment: &Segment, center: Point, radius: f64) -> Option<f64> {
+    if (segment.to - center).norm() <= radius {
+        return None;
+    }
+    let (along, offset) = (segment.vector(), segment.from - center);
+    let (square, half) = (along.norm_squared(), along.dot(&offset));
+    let root = (half * half - square * (offset.norm_squared() - radius * radius)).max(0.0).sqrt();
+    Some(((root - half) / square).clamp(0.0, 1.0))
 }
 
 fn segments(start: Point, waypoints: &[Point]) -> impl Iterator<Item = Segment> {
@@ -93,6 +194,12 @@ impl FreeSpace {
     /// Length of a shortest path from `from` to `to`; infinite if there is none.
     pub fn distance(&self, from: Point, to: Point) -> f64 {
         self.geodesic(from, to).map_or(f64::INFINITY, |path| path.length)
+    }
+
+    /// How far a link between these places has to reach so that a robot can [walk](Geodesic::reach) from one to the other;
+    /// infinite if no way leads there.
+    pub fn link_reach(&self, from: Point, to: Point) -> f64 {
+        self.geodesic(from, to).map_or(f64::INFINITY, |path| path.reach(from))
     }
 
     /// The shortest ways to `goal` from everywhere, for many questions about the same goal.

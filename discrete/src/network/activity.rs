@@ -66,7 +66,7 @@ vocabulary! {
         BoundKept = "bound kept",
         /// It is relieved, and joins the primary team behind p₁.
         TeamJoined = "team joined",
-        /// It is relieved, and leads.
+        /// It is relieved, or nothing depends on its post any more, and leads.
         Released = "released",
         /// It is within reach of the announced task, eq. (2), and services it: from where it is, or from the post to which
         /// it is bound.
@@ -167,8 +167,8 @@ impl Activity {
 }
 
 impl DutyEvent {
-    /// Whether the robot goes away from the post that it holds, which another robot must hold by
-    /// then: the guards of these events ask for it.
+    /// Whether the robot goes away from the post that it holds, which another robot must hold by then, or on which
+    /// nothing may depend: the guards of these events ask for it.
     pub const fn needs_replacement(self) -> bool {
         matches!(
             self,
@@ -259,6 +259,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         row(Bound, On::RelayResumed, Relay),
         row(Bound, On::LeafResumed, Leaf),
         row(Bound, On::TaskReached, Leaf),
+        row(Bound, On::Released, Leading),
         row(Standby, On::PathJoined, Waiting),
         row(Relay, On::PathJoined, Waiting),
         row(Junction, On::PathJoined, Waiting),

@@ -20,6 +20,8 @@ vocabulary! {
         Elected = "elected",
         /// The elected leader has past duties, and cannot service its task from its post: it calls for a recruit (L_b = 1).
         Bound = "bound",
+        /// Nothing depends on the post of the elected leader any more: it leads on without a recruit.
+        Unbound = "unbound",
         /// The primary team is at a local stationary point: p₁ calls for a recruit (L_b = 0).
         Trapped = "trapped",
         /// The way to the task is longer than the primary team: p₁ calls for a recruit before it stands still.
@@ -93,6 +95,7 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Advance, MissionStep::Called, Phase::RecruitElection),
     step(0, Phase::Advance, MissionStep::PathHeard, Phase::PathAgreement),
     step(1, Phase::Advance, MissionStep::Bound, Phase::RecruitElection),
+    step(1, Phase::Advance, MissionStep::Unbound, Phase::Advance),
     step(1, Phase::Advance, MissionStep::Reached, Phase::Idle),
     step(2, Phase::Advance, MissionStep::Trapped, Phase::RecruitElection),
     step(3, Phase::Advance, MissionStep::Foreseen, Phase::RecruitElection),

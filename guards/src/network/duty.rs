@@ -91,7 +91,7 @@ pub fn team_joined() -> Guard {
     named("team joined", proposition("is_relieved"))
 }
 
-/// It is the leader, and another robot holds its post.
+/// It is the leader, and another robot holds its post, or nothing depends on it.
 pub fn released() -> Guard {
     named("released", proposition("is_relieved"))
 }

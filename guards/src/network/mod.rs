@@ -54,7 +54,14 @@ pub mod mission {
     /// the last task has left without a branch have had time to become redundant: they can come then.
     pub fn bound() -> Guard {
         let free_to_call = !proposition("tree_settles") & !proposition("posted_near");
-        disengaged("bound", proposition("bound") & free_to_call)
+        disengaged("bound", proposition("bound") & free_to_call & !proposition("post_unused"))
+    }
+
+    /// Nothing has depended on the post of the elected leader for as long as it takes to give such posts up, and it
+    /// cannot service its task from there.
+    pub fn unbound() -> Guard {
+        let leads_on = !proposition("tree_settles") & !proposition("posted_near");
+        disengaged("unbound", proposition("post_unused") & leads_on)
     }
 
     /// A local stationary point (Sec. V-A2): the whole primary team has stood still for a while,
@@ -68,12 +75,12 @@ pub mod mission {
         )
     }
 
-    /// A recruit will be needed: no chain of as many links as the team has reaches from the parent of p₁ to the
-    /// task. Where recruits are called for ahead of a standstill, that is enough, once p₁ hears no node nearer to
+    /// A recruit will be needed: more links than the team has lead from the parent of p₁ to the task.
+    /// Where recruits are called for ahead of a standstill, that is enough, once p₁ hears no node nearer to
     /// the task that it might attach to, the redundant robots that were attached to it have left it, and unless
     /// such a call has been in vain.
     pub fn foreseen() -> Guard {
-        let needed = variable("way_left").more_than(variable("reach_left"));
+        let needed = variable("links_left").more_than(variable("members"));
         let ready = !proposition("pending")
             & !proposition("bears_leavers")
             & !proposition("hears_nearer_parent");

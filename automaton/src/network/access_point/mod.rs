@@ -435,8 +435,8 @@ impl AccessPoint {
     }
 
     fn is_within_changeover(&self, other: Point) -> bool {
-        self.site.distance(self.position, other)
-            <= 2.0 * CHANGEOVER_SHARE * self.site.lengths(self.stretched).build
+        let reach = CHANGEOVER_SHARE * self.site.lengths(self.stretched).build;
+        self.site.are_within_changeover(self.position, other, reach)
     }
 
     /// Which robots are attached here, and which take part.

@@ -18,7 +18,7 @@ use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
 use crate::network::beacon::{Announcement, Notice, Reports};
-use crate::network::duty::Station;
+use crate::network::duty::{Bound, Duty, Station};
 use crate::network::shared::renew;
 
 /// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
@@ -77,7 +77,10 @@ impl Robot {
                 && !self.bears_branch()
                 && !self.hears_no_parent()
         };
-        let counts = if self.duty.is_bound() { self.is_eager() } else { is_unused() };
+        let counts = match self.duty.is_bound() {
+            true => self.is_eager() || self.is_bound_to_unused_post(),
+            false => is_unused(),
+        };
         let is_paused = self.tree_is_frozen() || self.is_engaged();
         let enough = PATIENCE_WITH_UNUSED_POSTS + 1;
         self.unused_periods =
@@ -89,10 +92,20 @@ impl Robot {
     /// redundant yet. In the paper's order it does not wait for them.
     pub(super) fn awaits_retirements(&self) -> bool {
         let may_retire = |known: &Announcement| known.again || !known.before.is_empty();
-        self.is_eager()
-            && self.duty.is_bound()
-            && self.announcement().is_some_and(may_retire)
+        let awaits_others = || self.is_eager() && self.announcement().is_some_and(may_retire);
+        self.duty.is_bound()
             && self.unused_periods <= PATIENCE_WITH_UNUSED_POSTS
+            && (self.is_bound_to_unused_post() || awaits_others())
+    }
+
+    /// Whether it is a bound leader, services no task from its post, and no branch depends on that; robots that are
+    /// attached to it find another parent.
+    pub(super) fn is_bound_to_unused_post(&self) -> bool {
+        let Duty::Bound(Bound(held)) = *self.duty else { return false };
+        held.station.post.task.is_none()
+            && !self.bears_branch()
+            && !self.hears_no_parent()
+            && self.children().all(|child| child.beacon.can_detach)
     }
 
     /// Whether it looks for another parent for its fixed post, or no branch depends on that any more.

@@ -434,6 +434,13 @@ fn release(waiting: &AwaitingRelease, robot: &Robot, effects: &mut Effects) -> L
     Leading(team_post(&waiting.held, robot, None))
 }
 
+/// Its post becomes that of the leader: nothing depends on it.
+fn leave_unused_post(bound: &Bound, robot: &Robot, effects: &mut Effects) -> Leading {
+    let event = MissionEvent::Released { robot: robot.id };
+    effects.extend([DutyEffect::Report(event), DutyEffect::Restart]);
+    Leading(with_kind(bound.0, PostKind::Primary { follows: None }))
+}
+
 fn settle<A: Holder>(duty: &A, robot: &Robot, _: &mut Effects) -> Relay {
     Relay(fixed_here(duty.held(), robot))
 }
@@ -669,6 +676,7 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             join_team,
         ))
         .carried_out(Transfer::new(On::Released, guards::released(), "lead", release))
+        .carried_out(Transfer::new(On::Released, guards::released(), "lead", leave_unused_post))
         .carried_out(reached::<Standby>(On::StandbyReached, guards::standby_reached()))
         .carried_out(reached::<Relay>(On::RelayReached, guards::relay_reached()))
         .carried_out(reached::<Junction>(On::JunctionReached, guards::junction_reached()))

@@ -70,10 +70,10 @@ facts! {
         radius,
         /// The number of branches attached to its post.
         branches,
-        /// Geodesic distance from the parent of p₁ to where its task is serviced from.
-        way_left,
-        /// How far from there the leader gets at most, with as many links as the team has.
-        reach_left,
+        /// How many links lead from the parent of p₁ to where its task is serviced from.
+        links_left,
+        /// How many links the primary team has, one for each member.
+        members,
     }
     propositions {
         /// A task is announced whose election this robot has not begun.
@@ -123,6 +123,8 @@ facts! {
         finds_better_parent,
         /// It leads alone, and a fixed post has been attached to its own.
         burdened,
+        /// It is the elected leader with past duties, and nothing depends on its post any more.
+        post_unused,
         /// The task that is serviced from its post is over.
         task_closed,
     }
@@ -188,8 +190,8 @@ facts! {
             superseded: robot.is_unbound(),
             /// It learns in this jump that the primary team is dissolved.
             dissolved: robot.is_dissolved(),
-            /// It is relieved now of the last post of Σ.
-            is_relieved: robot.takes_step(MissionStep::Relieved),
+            /// It is relieved now of the last post of Σ, or bound to its post no more.
+            is_relieved: robot.takes_step(MissionStep::Relieved) || robot.takes_step(MissionStep::Unbound),
             /// It takes the post ahead now.
             takes_post_ahead: robot.takes_post_ahead(),
             /// The post that it takes on Σ is that of a redundant robot.
@@ -335,6 +337,7 @@ impl Robot {
         facts.may_set_out = self.may_set_out();
         facts.finds_better_parent = self.finds_better_parent();
         facts.burdened = self.is_burdened();
+        facts.post_unused = self.is_bound_to_unused_post();
         facts.task_closed = self.services_closed_task();
         facts
     }
@@ -436,9 +439,9 @@ impl Robot {
         }
         if facts.first
             && self.is_eager()
-            && let Some((way, reach)) = self.way_and_reach_left()
+            && let Some((links, members)) = self.links_left()
         {
-            (facts.way_left, facts.reach_left) = (way, reach);
+            (facts.links_left, facts.members) = (links, members);
             facts.hears_nearer_parent = self.hears_nearer_parent();
             facts.bears_leavers = self.bears_redundant();
         }

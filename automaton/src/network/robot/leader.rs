@@ -74,6 +74,12 @@ pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects)
     Advance { path: None, in_vain: false }
 }
 
+/// Nothing depends on the post of the leader any more: it leaves it, and leads.
+pub(super) fn lead_on(advance: &Advance, _: &Robot, effects: &mut Effects) -> Advance {
+    effects.push(MissionEffect::Issue(Notice::Advance { joined: None }));
+    advance.clone()
+}
+
 /// Of bids that are alike otherwise, that in the tree of the first access point is the best.
 const fn economy_in_tree(root: usize) -> i64 {
     -(root as i64)

@@ -218,7 +218,7 @@ impl Robot {
     }
 
     fn distance_to_access(&self, access: usize, place: Point) -> f64 {
-        self.site.distance(place, self.site.access_points[access])
+        self.site.link_length(place, self.site.access_points[access])
     }
 
     /// Whether it keeps its link on a way from a place, if it has to change over between access points.

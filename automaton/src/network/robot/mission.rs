@@ -305,6 +305,12 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
             recruit::call,
         ))
         .carried_out(Transfer::new(
+            Step::Unbound,
+            guards::unbound(),
+            "lead on",
+            leader::lead_on,
+        ))
+        .carried_out(Transfer::new(
             Step::Trapped,
             guards::trapped(),
             "call for a recruit",

@@ -197,7 +197,7 @@ impl Robot {
         let mut discs = vec![Disc { center: self.position, radius: step }];
         discs.extend(self.discs_of_trail());
         discs.extend(self.post_discs());
-        discs.extend(self.tree_links().iter().filter_map(|link| self.link_disc(link)));
+        discs.extend(self.tree_links().iter().flat_map(|link| self.link_discs(link)));
         MotionProblem { position: self.position, waypoint, half_planes, discs }
     }
 
@@ -255,20 +255,24 @@ impl Robot {
         })
     }
 
-    /// The disc in which the robot keeps a link of the tree within its limit, with the other end
-    /// where it is now. A link that errors have made longer becomes shorter with each move, by as much as
-    /// the move may be off, so that it truly gets no longer.
-    fn link_disc(&self, link: &TreeLink) -> Option<Disc> {
-        let neighbour = self.neighbour(link.to)?;
-        let path = self.site.free_space.geodesic(self.position, neighbour.position())?;
-        let is_too_long = path.length > link.limit * (1.0 + ROUNDING);
-        let spare = match is_too_long {
-            true => -self.site.settings.errors.motion,
-            false => (link.limit - path.length).max(0.0),
-        };
-        let corner = self.next_corner(&path)?;
-        let radius = ((corner - self.position).norm() + spare).max(0.0);
-        Some(Disc { center: corner, radius })
+    /// The discs in which the robot keeps a link of the tree within its limit, with the other end where it is now: around
+    /// that, and around each corner of the way to it. A link that errors have made longer becomes shorter with each
+    /// move, by as much as the move may be off, so that it truly gets no longer.
+    fn link_discs(&self, link: &TreeLink) -> impl Iterator<Item = Disc> {
+        let neighbour = self.neighbour(link.to);
+        let path = neighbour.and_then(|node| {
+            self.site.free_space.geodesic(self.position, node.position())
+        });
+        let reached = ROUNDING * self.site.workspace.extent();
+        let (limit, motion) = (link.limit, self.site.settings.errors.motion);
+        path.into_iter().flat_map(|path| path.waypoints).filter_map(move |center| {
+            let distance = (center - self.position).norm();
+            let radius = match distance > limit * (1.0 + ROUNDING) {
+                true => distance - motion,
+                false => limit.max(distance),
+            };
+            (distance > reached).then_some(Disc { center, radius })
+        })
     }
 
     /// The robot measures its position at a sample. One that has not moved stays where it has measured

@@ -282,7 +282,7 @@ impl Robot {
         let longest =
             [(own.to, other.from, one), (own.from, other.to, two), (own.to, other.to, one + two)]
                 .into_iter()
-                .map(|(a, b, moves)| self.site.free_space.distance(a, b) + shorter * moves)
+                .map(|(a, b, moves)| self.site.free_space.link_reach(a, b) + shorter * moves)
                 .fold(0.0, f64::max);
         (longest > limit).then_some(link.to)
     }

@@ -201,7 +201,7 @@ impl Robot {
             }
             None => {
                 let remaining = standstill.map_or_else(|| self.remaining(), |team| team.remaining);
-                let wanted = (remaining / self.build_length()).ceil().max(1.0);
+                let wanted = (remaining / self.hard_length()).ceil().max(1.0);
                 let reason = format!(
                     "task {task} needs another recruit, and no robot is left that can come; from where \
                      the team stands more robots are needed, about {wanted}"
@@ -211,11 +211,12 @@ impl Robot {
         }
     }
 
-    /// Whether longer links would take the team that calls farther.
+    /// Whether the team that calls may go on where it knows that no robot is left that can come: with longer links, or
+    /// as its leader is near enough to the task where it is.
     fn could_stretch(&self) -> bool {
         let calls_for_length =
             matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
-        calls_for_length && !self.stretched && self.site.could_stretch()
+        calls_for_length && !self.stretched
     }
 
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {

@@ -265,14 +265,13 @@ impl Robot {
         self.is_eager() && self.duty.is_primary() && self.tree_is_frozen()
     }
 
-    /// Geodesic distance from the parent of p₁ to where the task is serviced from, and how far from there the
-    /// leader gets at most: to the end of a chain of as many links as the team has members, none of them ever
-    /// longer than d_hard, and within [`reach`](Self::reach) of the task.
-    pub(super) fn way_and_reach_left(&self) -> Option<(f64, f64)> {
+    /// How many links lead from the parent of p₁ to where the leader [stops](Self::reach), each as long as it may ever be,
+    /// and how many the team has: one for each member.
+    pub(super) fn links_left(&self) -> Option<(f64, f64)> {
         let parent = self.neighbour_at(self.anchor()?)?;
         let (target, members) = (self.target?, f64::from(self.team?.members));
-        let link = self.longest_length();
-        Some((self.site.distance(parent.position(), target), members * link + self.reach()))
+        let (from, longest) = (parent.position(), self.longest_length());
+        Some((self.site.links_between(from, target, longest, self.reach()), members))
     }
 
     /// The distance to the task announced.
@@ -290,12 +289,25 @@ impl Robot {
         let bound = self
             .anchor()
             .and_then(|anchor| self.neighbour_at(anchor))
-            .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.build_length());
+            .is_none_or(|parent| self.length_ahead(parent) >= SLACK * self.build_length());
         let bunched = || {
             self.team_goal()
                 .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
         };
         !bound && !self.is_saturated() && (self.leads() || !bunched())
+    }
+
+    /// The length of its link to this node, or what that would be a step ahead: it may be longer at once where the
+    /// shortest way changes over to the other side of an obstacle.
+    fn length_ahead(&self, node: &Neighbour) -> f64 {
+        let now = self.walk_to(node);
+        let ahead = self.waypoint.map(|waypoint| {
+            let way = waypoint - self.position;
+            let step = self.site.settings.step_radius.min(way.norm());
+            let place = self.position + way.try_normalize(0.0).unwrap_or_default() * step;
+            self.site.walk(place, node.position())
+        });
+        ahead.map_or(now, |ahead| now.max(ahead))
     }
 
     /// Whether it leads and can service its task from where it is, although another robot beside it could not: where

@@ -107,6 +107,9 @@ impl Robot {
         let parent =
             self.neighbour(link.to).filter(|it| it.is_access_point() || it.beacon.parked)?;
         let (space, parent) = (&self.site.free_space, parent.position());
+        if path.waypoints.iter().all(|&at| self.site.walk(at, parent) <= link.limit) {
+            return None;
+        }
         let back = space.geodesic(self.position, parent)?;
         // What is left of a way that the link does not cover.
         let left = |length: f64| (length - link.limit).max(0.0);

@@ -144,10 +144,12 @@ pub enum Problem {
          must stay more than 2 clearances apart; lower it, or raise max_range", told_errors(*errors)
     )]
     ClearanceTooLarge { clearance: f64, max_range: f64, errors: f64 },
-    /// σ > (u − 2ρ)/2 (footnote 6).
+    /// σ > (u − 2ρ)/4: see [`Settings::longest_step_radius`](super::Settings::longest_step_radius).
     #[error(
-        "{step_radius} is too long a step: robots that cannot hear each other could meet \
-         within one period, so at most (max_range − 2 clearance)/2 = {}", rounded(*most)
+        "{step_radius} is too long a step: a robot that goes out of range in one control period could not be told \
+         from one that is silent and near enough to collide with in the next, so 2 clearance + 2 step_radius must \
+         not exceed max_range − 2 step_radius; step_radius is at most (max_range − 2 clearance)/4 = {}",
+        rounded(*most)
     )]
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.

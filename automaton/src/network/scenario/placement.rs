@@ -159,7 +159,7 @@ impl<'a> Ground<'a> {
         while let Some((parent, from)) = reached.pop_front() {
             for robot in neighbours.within(from, longest) {
                 let place = self.robots[robot];
-                if is_missing[robot] && self.site.distance(from, place) <= longest {
+                if is_missing[robot] && self.site.link_length(from, place) <= longest {
                     is_missing[robot] = false;
                     let reliability = self.site.link.reliability((place - from).norm());
                     tree.push(Attached { robot, parent, reliability });

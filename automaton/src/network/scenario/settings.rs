@@ -153,6 +153,15 @@ impl Settings {
         self.step_radius + self.errors.motion
     }
 
+    /// (u − 2ρ)/4, and less where there are errors: the largest σ. Two robots that hear each other and may go out of
+    /// range in one control period, since they are more than u − 2σ apart, must not be so near that they could come
+    /// into contact in one, at 2ρ + 2σ. Otherwise neither can tell a robot that has gone from one whose messages are
+    /// lost, and has to wait for it for ever.
+    pub fn longest_step_radius(&self) -> f64 {
+        let errors = self.link_margin() + 2.0 * self.errors.motion;
+        (self.link.max_range - 2.0 * self.planning_clearance() - errors) / 4.0
+    }
+
     /// δ − e: a robot that measures itself within this distance of a place is truly within δ of it.
     pub fn arrival_radius(&self) -> f64 {
         self.service_radius - self.errors.position

@@ -329,7 +329,7 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
         service_radius, step_radius, build_reliability, tree_reliability, errors, ..
     } = settings;
     let clearance = settings.planning_clearance();
-    let most = (max_range - 2.0 * clearance - settings.link_margin()) / 2.0;
+    let most = settings.longest_step_radius();
     if most <= 0.0 {
         let (clearance, errors) = (settings.clearance, settings.link_margin());
         let problem = Problem::ClearanceTooLarge { clearance, max_range, errors };

@@ -57,14 +57,15 @@ impl<'a> Ground<'a> {
         10.0 * self.space.tolerance()
     }
 
-    /// The length of a link along the shortest way around walls, between nodes.
+    /// How far a link between nodes has to reach so that a robot can walk from one to the other.
     pub fn length(&self, one: usize, other: usize, snapshot: &Snapshot) -> f64 {
-        self.space.distance(self.place(one, snapshot), self.place(other, snapshot))
+        self.space.link_reach(self.place(one, snapshot), self.place(other, snapshot))
     }
 
-    /// The length of the way from a node to the place nearest to a task where a robot could stand.
-    pub fn way_to(&self, task: Point, node: usize, snapshot: &Snapshot) -> f64 {
-        self.space.distance(self.place(node, snapshot), self.space.nearest(task))
+    /// How many links of this length lead from a node to the place nearest to a task where a robot could stand.
+    pub fn links_to(&self, task: Point, node: usize, snapshot: &Snapshot, link: f64) -> u32 {
+        let (from, to) = (self.place(node, snapshot), self.space.nearest(task));
+        self.space.geodesic(from, to).map_or(u32::MAX, |way| way.links(from, link, 0.0))
     }
 
     /// The length of the shortest way from one of these places to the place from which a task is serviced.

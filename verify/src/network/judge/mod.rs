@@ -370,17 +370,17 @@ impl<'a> Judge<'a> {
         Err(Dispute::of(Property::Events, &[robot], sentence))
     }
 
-    /// Whether the way from the parent of p₁ to the place nearest to the task is longer than as many links as the
-    /// team has robots, at the beginning or at the end of the period.
+    /// Whether more links than the team has robots lead from the parent of p₁ to the place nearest to the task, at the
+    /// beginning or at the end of the period.
     fn is_too_short(&self, ledger: &Ledger, first: usize, snapshot: &Snapshot) -> bool {
         let limits = self.monitor.limits();
         let ground = Ground::of(&self.scenario, limits);
         let Some((ground, task)) = ground.zip(ledger.task()) else { return false };
-        let reach = ledger.primary_team.len() as f64 * self.link_limit();
+        let (members, link) = (ledger.primary_team.len() as u32, self.link_limit());
         [self.previous.as_ref(), Some(snapshot)].into_iter().flatten().any(|snapshot| {
             let parent = verdicts::parent_of(first, snapshot);
             parent.is_some_and(|parent| {
-                ground.way_to(limits.tasks()[task], parent, snapshot) > reach - ground.tolerance()
+                ground.links_to(limits.tasks()[task], parent, snapshot, link) > members
             })
         })
     }
@@ -484,8 +484,10 @@ impl<'a> Judge<'a> {
         snapshot: &Snapshot,
         events: &[MissionEvent],
     ) -> Option<Certificate> {
-        let is_before = |event: &&MissionEvent| {
-            !matches!(event, MissionEvent::TaskGivenUp { .. } | MissionEvent::TaskAnnounced { .. })
+        let is_before = |event: &&MissionEvent| match **event {
+            MissionEvent::TaskAnnounced { task: announced } => announced == task,
+            MissionEvent::TaskGivenUp { .. } => false,
+            _ => true,
         };
         let before: Vec<MissionEvent> = events.iter().filter(is_before).cloned().collect();
         let mut then = self.clone();
