@@ -169,9 +169,9 @@ impl Site {
         let radio = Link::new(model);
         let link = Self::as_measured(&radio, &self.settings)?;
         let settings = &self.settings;
-        let lengths = |reliability| settings.link_lengths(radio.distance_at(reliability));
-        let usual = lengths(settings.build_reliability);
-        let stretched = lengths(settings.tree_reliability);
+        let usual = settings.link_lengths(radio.distance_at(settings.build_reliability));
+        let longest = radio.distance_at(settings.tree_reliability);
+        let stretched = settings.stretched_link_lengths(longest);
         let watch_radius = Self::watch_radius(&self.settings, &link);
         Ok(Site { link, radio, usual, stretched, watch_radius, has_own_link: true, ..self })
     }

@@ -127,6 +127,8 @@ facts! {
         post_unused,
         /// The task that is serviced from its post is over.
         task_closed,
+        /// Tasks are over: a mission that has been given up may go on with the robots that they had.
+        tasks_over,
     }
     of the robot robot {
         quantities {
@@ -338,6 +340,7 @@ impl Robot {
         facts.finds_better_parent = self.finds_better_parent();
         facts.burdened = self.is_burdened();
         facts.post_unused = self.is_bound_to_unused_post();
+        facts.tasks_over = !self.closed.is_empty();
         facts.task_closed = self.services_closed_task();
         facts
     }

@@ -197,7 +197,14 @@ impl Settings {
 
     /// How long they may be when no robot is left that can be recruited.
     pub fn stretched_links(&self) -> LinkLengths {
-        self.link_lengths(self.link.distance_of(self.tree_reliability))
+        self.stretched_link_lengths(self.link.distance_of(self.tree_reliability))
+    }
+
+    /// As [`link_lengths`](Self::link_lengths), for links that are made as long as they may ever be, but for a clearance:
+    /// robots that come to their ends later stand nearer to their posts.
+    pub(crate) fn stretched_link_lengths(&self, longest: f64) -> LinkLengths {
+        let LinkLengths { build, hard } = self.link_lengths(longest);
+        LinkLengths { build: build.max(hard - self.planning_clearance()), hard }
     }
 
     /// How long links may be, as their ends measure them, whose true lengths are at most `longest`.
