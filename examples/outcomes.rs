@@ -159,28 +159,29 @@ fn mission(
     folder: Option<&Path>,
     spent: &mut Spent,
 ) -> Result<End, Box<dyn Error>> {
-    let spans = Spans::of(scenario)?;
+    let spans = Spans::along_ways(scenario)?;
     let mut usage = Usage::default();
     let (outcome, reason) = match run(scenario, &mut [&mut usage]) {
         Ok(completed) => (Some(completed.end.outcome), completed.end.reason),
         Err(error) => (None, error.to_string()),
     };
-    let tasks = scenario.task.len();
+    let tasks: Vec<usize> = (0..scenario.task.len()).collect();
     let end = match outcome {
         Some(Outcome::Serviced) => {
             spent.add(&usage.spent);
             let build = scenario.site().usual.build;
-            let links = spans.spanning_tree(tasks) / build;
-            let ways: f64 = (0..tasks).map(|task| spans.way_to(task)).sum();
+            let links = spans.spanning_tree(&tasks) / build;
+            let ways: f64 = tasks.iter().map(|&task| spans.way_to(task)).sum();
             let periods = ways / scenario.site().settings.step_radius;
             End::Serviced {
-                robots: usage.robots as f64 / links.max(tasks as f64),
-                whole: usage.robots as f64 / spans.robots_of_spanning_tree(tasks, build),
+                robots: usage.robots as f64 / links.max(tasks.len() as f64),
+                whole: usage.robots as f64 / spans.robots_of_spanning_tree(&tasks, build),
                 time: usage.periods as f64 / periods.max(1.0),
             }
         }
         Some(Outcome::InsufficientRobots) => {
-            let least = spans.least_robots(usage.tasks);
+            let announced: Vec<usize> = (0..usage.tasks).collect();
+            let least = Spans::as_the_crow_flies(scenario).least_robots(&announced);
             End::Insufficient { proved: least.is_none_or(|least| least > scenario.robot.len()) }
         }
         _ => End::Bad,

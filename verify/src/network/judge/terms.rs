@@ -319,12 +319,12 @@ mod tests {
         enter(MissionEvent::TaskServiced { task: 0, robot: 0 });
         enter(MissionEvent::TaskAnnounced { task: 1 });
         enter(MissionEvent::TaskAnnounced { task: 2 });
-        assert_eq!([0, 1, 2].map(|task| terms.unfinished_before(task)), [None, None, Some(1)]);
+        assert_eq!([0, 1, 2].map(|task| terms.unfinished_before(task, 7)), [None, None, Some(1)]);
         assert_eq!((terms.pursued(), terms.done()), (Some(2), 1));
-        let left_out = serviced_first().unfinished_before(2);
+        let left_out = serviced_first().unfinished_before(2, 7);
         let mut forgetful = serviced_first();
         forgetful.miss_access_point();
-        assert_eq!((left_out, forgetful.unfinished_before(2)), (Some(1), None));
+        assert_eq!((left_out, forgetful.unfinished_before(2, 7)), (Some(1), None));
     }
 
     /// A robot stops, and another one services its task from then on.
