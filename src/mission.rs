@@ -382,10 +382,11 @@ impl<'a, 'w> Gallery<'a, 'w> {
         let is_own = |task: &&usize| fleet.is_none_or(|it| it.inward().task(**task).is_some());
         let tasks: Vec<usize> = self.given_up.keys().filter(is_own).copied().collect();
         match &tasks[..] {
-            [] => {
+            // The mission ends over the task that is pursued.
+            _ if end.task.is_some() || tasks.is_empty() => {
                 let saturated = self.saturated_of(fleet);
                 let more = addition(end.outcome, end.certificate.as_ref(), &saturated);
-                End { reason: end.reason + &more.unwrap_or_default(), ..end }
+                End { reason: end.reason + &more.unwrap_or_default(), tasks, ..end }
             }
             [task] if end.outcome.is_given_up() => {
                 let reason = self.given_up[task].clone();

@@ -288,6 +288,12 @@ impl End {
         End { outcome, reason, task, tasks: Vec::new(), certificate: None, fleets: Vec::new() }
     }
 
+    /// Whether the mission ended as no task was left, after some had been given up.
+    pub fn is_of_given_up_tasks(&self) -> bool {
+        let is_given_up = |task| self.tasks.contains(&task);
+        !self.tasks.is_empty() && self.task.is_none_or(is_given_up)
+    }
+
     /// The end of a mission that has taken as many control periods as it may.
     pub fn at_step_limit(limit: usize) -> Self {
         let reason = format!("the mission has taken the {limit} control periods allowed");

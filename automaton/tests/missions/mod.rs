@@ -11,6 +11,7 @@ mod faults;
 mod routes;
 mod story;
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -60,7 +61,16 @@ fn run(scenario: Scenario) -> Mission {
         panic!("{}: the executor stops: {:?}", scenario.name, ending.reason);
     };
     let Jury { referee, periods, events, violation } = jury;
-    let end = End { certificate: referee.account(&end), ..end };
+    let given_up = events.iter().filter_map(|event| match *event {
+        MissionEvent::TaskGivenUp { task, .. } => Some(task),
+        _ => None,
+    });
+    let tasks: BTreeSet<usize> = given_up.collect();
+    let end = End {
+        certificate: referee.account(&end),
+        tasks: tasks.into_iter().collect(),
+        ..end
+    };
     if let Some(violation) = violation.or_else(|| referee.conclude(&end).err()) {
         panic!("{}: {violation}", scenario.name);
     }
@@ -79,7 +89,8 @@ impl Observer<Network> for Jury<'_> {
     const SEES_JUMPS: bool = false;
 
     fn flows(&mut self, network: &Network, _: HybridTime, _: f64) -> ControlFlow<End> {
-        let (snapshot, events): (Snapshot, _) = (network.snapshot(), network.events());
+        let snapshot = network.snapshot();
+        let events = self.referee.explain(&snapshot, &network.events());
         self.violation = self.referee.observe(&snapshot, &events).err();
         self.periods = snapshot.step + 1;
         self.events.extend(events);

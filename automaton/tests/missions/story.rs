@@ -43,6 +43,9 @@ fn tell(event: &MissionEvent) -> Option<String> {
         }
         On::RouteInfeasible { robot } => format!("{robot} is overloaded"),
         On::RoleChanged { robot, from, to } => format!("{robot}: {} to {}", from.name(), to.name()),
+        MissionEvent::TaskGivenUp { task, outcome, .. } => {
+            format!("task {task} is given up: {}", outcome.name())
+        }
         _ => return None,
     })
 }

@@ -91,7 +91,8 @@ const fn row(
 /// The table of an access point.
 ///
 /// Priority 0: what others report. Priority 1: the task that is pursued is given up. Priority 2: others are
-/// over. Priority 3: what the first access point does by itself.
+/// over. Priority 3: what the first access point does by itself. Priority 4: the task that is pursued is given up where
+/// nobody else can be asked.
 pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
     use Service::*;
     use ServiceEvent as On;
@@ -111,7 +112,7 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(1, Electing, On::Withdraws, Done),
         row(2, Electing, On::Closes, Electing),
         row(3, Electing, On::AnnouncesAgain, Electing),
-        row(3, Electing, On::GivesUp, Done),
+        row(4, Electing, On::GivesUp, Done),
         row(3, Electing, On::NoRobot, Over),
         row(3, Electing, On::NoBid, Over),
         row(3, Electing, On::NoAnswer, Over),
@@ -122,7 +123,7 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(1, UnderWay, On::Withdraws, Done),
         row(2, UnderWay, On::Closes, UnderWay),
         row(3, UnderWay, On::AnnouncesAgain, Electing),
-        row(3, UnderWay, On::GivesUp, Done),
+        row(4, UnderWay, On::GivesUp, Done),
         row(3, UnderWay, On::NoRobot, Over),
         row(0, Done, On::ElectionHeard, Electing),
         row(0, Done, On::ProgressHeard, UnderWay),

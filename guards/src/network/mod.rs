@@ -61,7 +61,7 @@ pub mod mission {
     /// cannot service its task from there.
     pub fn unbound() -> Guard {
         let leads_on = !proposition("tree_settles") & !proposition("posted_near");
-        disengaged("unbound", proposition("post_unused") & leads_on)
+        disengaged("unbound", proposition("bound") & proposition("post_unused") & leads_on)
     }
 
     /// A local stationary point (Sec. V-A2): the whole primary team has stood still for a while,

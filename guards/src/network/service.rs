@@ -23,7 +23,7 @@ pub fn service_heard() -> Guard {
 
 /// It hears that the mission has ended, has nobody else to ask, and does not go on with other tasks.
 pub fn end_heard() -> Guard {
-    let goes_on = may_ask_others() | proposition("skips_tasks");
+    let goes_on = may_ask_others() | can_skip();
     let may_go_on = pursues() & proposition("hears_failure") & goes_on;
     named("end heard", proposition("hears_end") & !may_go_on)
 }
@@ -39,7 +39,12 @@ pub fn gives_up_election() -> Guard {
 }
 
 fn may_skip() -> Predicate {
-    pursues() & proposition("skips_tasks")
+    pursues() & can_skip()
+}
+
+/// Tasks are given up one by one, and no secondary team is on its way: each of its robots is at the post that it holds.
+fn can_skip() -> Predicate {
+    proposition("skips_tasks") & !proposition("path_announced")
 }
 
 fn is_abandoned() -> Predicate {

@@ -23,8 +23,13 @@ use crate::network::shared::Shared;
 use crate::network::site::Site;
 use crate::node::{Input, Node as _, Outputs};
 
-/// The first access point of a hall, which hears robots 0 and 1.
+/// The first access point of a hall, which hears robots 0 and 1. A task that no robot can service ends the mission.
 fn access_point() -> AccessPoint {
+    access_point_with(json!({"unreachable": "end"}))
+}
+
+/// The same with these keys of `[mission]`.
+fn access_point_with(mission: serde_json::Value) -> AccessPoint {
     let hall: Scenario = serde_json::from_value(json!({
         "name": "hall",
         "workspace": {"boundary": [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]},
@@ -33,6 +38,7 @@ fn access_point() -> AccessPoint {
             "clearance": 0.04, "service_radius": 0.2, "step_radius": 0.1,
             "tree_reliability": 0.1, "period": 0.5,
         },
+        "mission": mission,
         "access_point": [{"position": [5.0, 5.0]}],
         "robot": [{"position": [4.0, 5.0], "rate": 0.1}, {"position": [6.0, 5.0], "rate": 0.1}],
         "task": [{"position": [9.0, 9.0]}],
@@ -223,8 +229,8 @@ impl AccessPoint {
     /// It heard `age` control periods ago that a task is serviced, and `silence` ago of its robot.
     fn has_heard_of(&mut self, task: usize, age: u32, silence: u32) {
         self.service = Current::new(Serving::Done(Done { task }));
-        self.expect_serviced(task + 1);
-        self.known_tasks[task] = TaskRecord { silence, age };
+        self.expect_serviced(task);
+        self.known_tasks.insert(task, TaskRecord { silence, age });
     }
 
     /// It pursues a task, and has taken up this notice.
@@ -569,4 +575,61 @@ fn a_task_is_not_out_of_reach_where_robots_of_others_have_been_asked_before() {
     };
     assert_eq!(outcome_of(&[0]), Some(Outcome::UnreachableTask));
     assert_eq!(outcome_of(&[]), Some(Outcome::InsufficientRobots));
+}
+
+/// Its team is dissolved, and another task is announced.
+#[test]
+fn a_task_that_robots_have_given_up_is_skipped() {
+    use pleach_discrete::network::Service;
+    let mut point = access_point_with(json!({}));
+    point.is_asked(&[Task::at(THERE), Task::at([4.0, 5.0])], 1);
+    point.pursues_without(1, Standing::Gone(Gone));
+    point.knows_one_elector();
+    let epoch = point.bulletin.id().epoch();
+    let events = point.hears_of_failure();
+    assert_eq!((point.service.location(), &*point.closed), (Service::Done, &IdSet::singleton(0)));
+    assert_eq!(*point.notice(), Notice::Withdrawn { task: 0 });
+    assert!(point.bulletin.id().epoch() > epoch, "robots that go on hear of it");
+    let is_told = |event: &MissionEvent| matches!(event, MissionEvent::TaskGivenUp { task: 0, .. });
+    assert!(events.iter().any(is_told), "{events:?}");
+}
+
+#[test]
+fn a_mission_ends_with_the_outcome_of_the_task_that_was_given_up() {
+    let end_of = |given_up: &[(usize, Outcome)]| {
+        let mut point = access_point_with(json!({}));
+        point.is_asked(&[Task::at(THERE), Task::at([4.0, 5.0])], 1);
+        point.has_heard_of(1, 30, 0);
+        point.given_up = given_up.to_vec();
+        given_up.iter().for_each(|&(task, _)| point.close(task));
+        point.serve().expect("guards have values");
+        match point.notice() {
+            Notice::Ended { outcome, reason, .. } => Some((*outcome, reason.to_string())),
+            _ => None,
+        }
+    };
+    let (outcome, reason) = end_of(&[(0, Outcome::UnreachableTask)]).expect("it is over");
+    assert_eq!(outcome, Outcome::UnreachableTask);
+    assert!(reason.contains("no robot could service task 0"), "{reason}");
+    let (outcome, reason) = end_of(&[]).expect("it is over");
+    assert_eq!((outcome, reason.as_str()), (Outcome::Serviced, "all 2 tasks are serviced"));
+}
+
+/// The access point stands at (5, 5).
+#[test]
+fn tasks_come_in_the_order_of_the_mission() {
+    let next = |order: &str, serviced: &[usize]| {
+        let mut point = access_point_with(json!({"order": order}));
+        let at = |x, priority| Task { priority: Some(priority), ..Task::at([x, 5.0]) };
+        point.is_asked(&[at(9.0, 1), at(8.5, 3), at(2.0, 3), at(7.0, -1)], 1);
+        for &task in serviced {
+            point.known_tasks.insert(task, TaskRecord { silence: 0, age: 1 });
+        }
+        point.next_task()
+    };
+    let orders = |serviced: &[usize]| ["file", "priority", "nearest"].map(|it| next(it, serviced));
+    assert_eq!(orders(&[]), [Some(0), Some(1), Some(3)]);
+    assert_eq!(orders(&[3]), [Some(0), Some(1), Some(1)], "from the task that is serviced");
+    assert_eq!(orders(&[0, 1]), [Some(2), Some(2), Some(3)], "priorities are alike");
+    assert_eq!(orders(&[0, 1, 2, 3]), [None; 3]);
 }

@@ -78,6 +78,8 @@ pub enum ExchangeEffect {
     Answered(NodeId, u32),
     /// It no longer repeats the refusal of this mover's offer, which that robot has not heard.
     RefusedInVain(NodeId),
+    /// This robot has refused its offer.
+    Refused(NodeId),
     /// It no longer looks for a partner.
     PartnerAsked,
     /// It takes this duty over from this robot.
@@ -108,6 +110,7 @@ impl Holds<Exchange> for Robot {
                         answered.in_vain = true;
                     }
                 }
+                ExchangeEffect::Refused(partner) => self.remember_refusal(partner),
                 ExchangeEffect::PartnerAsked => self.partner = None,
                 ExchangeEffect::Takes(duty, partner) => {
                     // Whom it had chosen could replace it in the duty that it gives away.
@@ -195,9 +198,10 @@ fn hear_answer<A: HasOffers, B: From<Offers<Duty>>>(
     let reply = robot.answer_to_offer()?;
     let partner = exchange.offers().offer()?.to;
     let mut offers = exchange.offers().clone();
-    if let Some(duty) = offers.hear(robot.id, reply) {
-        effects.push(ExchangeEffect::Takes(duty, partner));
-    }
+    effects.push(match offers.hear(robot.id, reply) {
+        Some(duty) => ExchangeEffect::Takes(duty, partner),
+        None => ExchangeEffect::Refused(partner),
+    });
     Some(B::from(offers))
 }
 

@@ -99,7 +99,7 @@ use duties::Label;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
 use neighbours::Neighbours;
-use partner::Answered;
+use partner::{Answered, PastOffers};
 use reservation::{HeldFlow, Reservation};
 use rounds::Rounds;
 use routing::LinkTerms;
@@ -229,8 +229,8 @@ pub struct Robot {
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
     taking_over: Option<(Duty, NodeId)>,
-    /// The robots with which it has exchanged duties since this notice.
-    past_partners: Option<(NoticeId, Vec<NodeId>)>,
+    /// What has become of its offers since this notice.
+    past_offers: Option<(NoticeId, PastOffers)>,
     /// The offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, Answered>,
 
@@ -343,7 +343,7 @@ impl Robot {
             forgotten_offers: 0,
             partner: None,
             taking_over: None,
-            past_partners: None,
+            past_offers: None,
             answered: BTreeMap::new(),
             neighbours: Neighbours::default(),
             period: 0,

@@ -63,6 +63,17 @@ pub(super) struct Answered {
     pub in_vain: bool,
 }
 
+/// What has become of the offers of a robot since a notice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct PastOffers {
+    /// The robots with which it has exchanged duties, one after the other.
+    exchanged: Vec<NodeId>,
+    /// The robots that have refused.
+    refused: Vec<NodeId>,
+}
+
+static NO_OFFERS: PastOffers = PastOffers { exchanged: Vec::new(), refused: Vec::new() };
+
 impl Robot {
     /// Once a period: a mover that makes no progress looks for a partner among the robots in its way. One that
     /// does not take part could be gone before it has answered.
@@ -76,43 +87,54 @@ impl Robot {
             true => (CONTACT, GAIN),
             false => (WEDGE, -CONCESSION),
         };
-        let own_way = self.site.distance(self.position, goal);
-        let mut nearest = own_way - gain * self.clearance();
-        let mut partner = None;
-        for neighbour in self.neighbours.iter() {
-            if neighbour.distance <= contact * self.clearance() && self.could_replace(neighbour) {
-                let way = self.site.distance(neighbour.position(), goal);
-                let is_return = match self.exchanges_with(neighbour.id()) {
-                    0 => false,
-                    times if self.is_of_team(neighbour) => times >= MOST_IN_TEAM,
-                    _ => way >= own_way,
-                };
-                if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
-                    (nearest, partner) = (way, Some(neighbour.id()));
-                }
+        let farthest = self.site.distance(self.position, goal) - gain * self.clearance();
+        let past = self.offers_since_notice();
+        let candidates = self.neighbours.iter().filter_map(|neighbour| {
+            let id = neighbour.id();
+            let is_beside = neighbour.distance <= contact * self.clearance();
+            if !is_beside || !self.could_replace(neighbour) || self.would_go_to_and_fro(neighbour) {
+                return None;
             }
-        }
-        self.partner = partner;
+            let way = self.site.distance(neighbour.position(), goal);
+            let fits = way < farthest && self.could_be_replaced_by(neighbour);
+            fits.then(|| (past.refused.contains(&id), way, id))
+        });
+        let best = candidates.min_by(|one, other| {
+            one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)).then(one.2.cmp(&other.2))
+        });
+        self.partner = best.map(|(_, _, id)| id);
     }
 
-    /// How often it has exchanged duties with this robot since the newest notice.
-    fn exchanges_with(&self, robot: NodeId) -> usize {
-        self.partners_since_notice().iter().filter(|&&partner| partner == robot).count()
+    /// Whether the two have exchanged duties since the newest notice: each of them may be nearer to the goal than the
+    /// other when it has stood still for a while. Two members of the team may a few times.
+    fn would_go_to_and_fro(&self, neighbour: &Neighbour) -> bool {
+        let exchanged = &self.offers_since_notice().exchanged;
+        let times = exchanged.iter().filter(|&&partner| partner == neighbour.id()).count();
+        times >= if self.is_of_team(neighbour) { MOST_IN_TEAM } else { 1 }
     }
 
-    /// The robots with which it has exchanged duties since the newest notice, one after the other.
-    pub(super) fn partners_since_notice(&self) -> &[NodeId] {
-        match &self.past_partners {
-            Some((notice, partners)) if *notice == self.notice_id() => partners,
-            _ => &[],
+    /// What has become of its offers since the newest notice.
+    pub(super) fn offers_since_notice(&self) -> &PastOffers {
+        match &self.past_offers {
+            Some((notice, offers)) if *notice == self.notice_id() => offers,
+            _ => &NO_OFFERS,
         }
     }
 
     /// It has exchanged duties with this robot.
     pub(super) fn remember_partner(&mut self, partner: NodeId) {
-        let mut partners = self.partners_since_notice().to_vec();
-        partners.push(partner);
-        self.past_partners = Some((self.notice_id(), partners));
+        self.remember_offer(|offers| offers.exchanged.push(partner));
+    }
+
+    /// This robot has refused its offer: others come first from now on.
+    pub(super) fn remember_refusal(&mut self, partner: NodeId) {
+        self.remember_offer(|offers| offers.refused.push(partner));
+    }
+
+    fn remember_offer(&mut self, remember: impl FnOnce(&mut PastOffers)) {
+        let mut offers = self.offers_since_notice().clone();
+        remember(&mut offers);
+        self.past_offers = Some((self.notice_id(), offers));
     }
 
     /// Whether this robot is on a way that another could go on with. One that makes way for the team is not.

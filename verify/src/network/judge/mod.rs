@@ -439,7 +439,7 @@ impl<'a> Judge<'a> {
                 Some("the robots knew that the mission had ended, and it went on".to_owned())
             }
             // Each of these tasks has come with its own certificate.
-            _ if end.outcome.is_given_up() && !end.tasks.is_empty() => None,
+            _ if end.outcome.is_given_up() && end.is_of_given_up_tasks() => None,
             Outcome::InsufficientRobots | Outcome::UnreachableTask | Outcome::Blocked
                 if end.task.is_some() && end.task != self.ledger.task() =>
             {

@@ -114,8 +114,8 @@ fn of_two_the_nearer_to_the_goal_is_the_partner() {
     }
 }
 
-/// It goes back to a robot with which it has exchanged since the newest notice only where that is nearer:
-/// three robots, none of which can go on, do not hand a duty round without end.
+/// Not even where that is nearer: three robots, none of which can go on, do not hand a duty round without end, nor two
+/// to and fro.
 #[test]
 fn no_robot_exchanges_back_to_where_it_came_from() {
     let back = |partners: &[NodeId]| {
@@ -129,7 +129,22 @@ fn no_robot_exchanges_back_to_where_it_came_from() {
     let mut robot = stuck(10);
     robot.remember_partner(1);
     robot.hears(parked(BESIDE));
-    assert_eq!(partner(&mut robot), Some(1), "it is nearer");
+    assert_eq!(partner(&mut robot), None, "although it is nearer");
+}
+
+#[test]
+fn a_robot_that_has_refused_is_asked_again_after_all_others() {
+    let mut robot = stuck(5);
+    robot.hears(beacon(1, east(0.09), redundant(11, 13), &[11, 13, 14]));
+    robot.hears(beacon(2, east(BESIDE), redundant(12, 13), &[12, 13, 14]));
+    let nearest = partner(&mut robot).expect("there are two");
+    robot.remember_refusal(nearest);
+    let other = partner(&mut robot).expect("there is another");
+    assert_ne!(other, nearest);
+    robot.remember_refusal(other);
+    assert_eq!(partner(&mut robot), Some(nearest), "both have refused");
+    robot.is_told(Notice::Advance { joined: None });
+    assert_eq!(partner(&mut robot), Some(nearest));
 }
 
 #[test]

@@ -10,14 +10,8 @@ use crate::network::scenario::Strategy;
 
 /// Robot 0 holds a fixed post that is attached to post 13, half a unit to the west.
 fn holder(strategy: Strategy) -> Robot {
-    holder_with(strategy, None)
-}
-
-/// As [`holder`], where links of the tree are this reliable.
-fn holder_with(strategy: Strategy, tree_reliability: Option<f64>) -> Robot {
     let mut scenario = hall();
     scenario.control.strategy = Some(strategy);
-    scenario.control.tree_reliability = tree_reliability;
     let mut robot = robot_of(&scenario);
     robot.holds(fixed(30, 13));
     robot
@@ -139,8 +133,8 @@ fn the_post_of_a_bound_leader_is_attached_past_its_parent_too() {
 /// A team that stands still tells of the other tree, so that its robots can come to the aid of those there.
 #[test]
 fn any_other_tree_will_do_once_links_are_as_long_as_they_get() {
-    let is_near = |stretched: bool, root: usize, tree_reliability: Option<f64>| {
-        let mut robot = holder_with(Strategy::Eager, tree_reliability);
+    let is_near = |stretched: bool, root: usize| {
+        let mut robot = holder(Strategy::Eager);
         robot.stretched = stretched;
         let extended =
             |way: Lineage, post: u32| way.extended_by(PostId(post)).expect("they differ");
@@ -152,10 +146,9 @@ fn any_other_tree_will_do_once_links_are_as_long_as_they_get() {
         robot.trace_lineage().expect("its automaton goes on");
         robot.is_near_other_tree()
     };
-    assert!(is_near(true, 1, None));
-    assert!(!is_near(false, 1, None), "links may become longer first");
-    assert!(is_near(false, 1, Some(0.9)), "links become no longer");
-    assert!(!is_near(true, 0, None), "it is in this tree");
+    assert!(is_near(true, 1));
+    assert!(!is_near(false, 1), "links may become longer first");
+    assert!(!is_near(true, 0), "it is in this tree");
 }
 
 #[test]

@@ -114,7 +114,7 @@ fn a_robot_whose_link_leads_farther_on_the_other_side_goes_there() {
         let first = robot.first_waypoint(Point::new(8.1, 7.45));
         first.expect("a way leads there").y > 7.5
     };
-    let (north, south) = (Point::new(7.5, 8.2), Point::new(7.5, 6.8));
+    let (north, south) = (Point::new(7.5, 8.5), Point::new(7.5, 6.5));
     assert!(goes_north(north, true) && !goes_north(south, true));
     assert!(!goes_north(north, false), "its parent does not rest there");
 }
