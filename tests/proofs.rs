@@ -185,23 +185,17 @@ fn the_document_names_every_property_test_and_counts_the_cases() {
     }
 }
 
-/// What is planted is in the document, with the engine that catches it, and still applies.
+/// Every fault of the list applies, and the document counts them.
 #[test]
-fn the_document_names_every_fault_and_each_applies() {
+fn the_document_counts_the_faults_and_each_applies() {
     let document = document();
-    let rows = rows(&document, "Planted faults");
     let faults = faults(root()).unwrap();
-    assert!(faults.len() >= 15);
-    // The first two rows are the head of the table.
-    assert_eq!(rows.len(), faults.len() + 2);
     let count = format!("{} faults, each with the check that catches it", faults.len());
     assert!(document.contains(&count), "it should say: {count}");
     let packages = Packages::read();
     for fault in faults {
         let planted = fault.planted(root()).unwrap();
         assert!(planted.contains(&fault.after) && !fault.says.is_empty(), "{}", fault.name);
-        let row = format!("| {} | {} | {} |", fault.name, fault.wrong, fault.engine);
-        assert!(rows.iter().any(|found| found.starts_with(&row)), "it should have: {row}");
         assert!(fault.command.starts_with("test -p "), "{}", fault.name);
         assert!(
             packages.have_test_for(&fault.command),
