@@ -1,181 +1,205 @@
-//! Each Kani harness names what it is about: an item of the product, and where the product uses it.
+//! Kani harnesses: each is about an item that the product uses, and says something under the real tool, too.
 //!
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it harnesses` writes the table in docs/proofs.md anew.
 
+#[path = "harnesses/catalogue.rs"]
+mod catalogue;
+#[path = "harnesses/demands.rs"]
+mod demands;
+#[path = "harnesses/shapes.rs"]
+mod shapes;
+#[path = "harnesses/source.rs"]
+mod source;
+
+use std::collections::BTreeMap;
+
 use crate::generated::{keep_up_to_date, read};
-use crate::sources::{code, files_below, relative};
 use crate::uses::{FOR_USERS, uses_of};
-use std::collections::{BTreeMap, BTreeSet};
+use catalogue::{Entry, catalogue};
+use demands::{complaints, covers};
+use source::{Harness, harnesses, harnesses_of, text_of};
 
-/// A harness, the function or table that it is about, and the file of that.
-type Proof = (&'static str, &'static str, &'static str);
-
-const ACCEPTANCE: &str = "continuous/src/network/acceptance.rs";
-const RELIABILITY: &str = "continuous/src/network/reliability.rs";
-const DUAL: &str = "continuous/src/network/routing/dual.rs";
-const LOCAL: &str = "continuous/src/network/routing/local.rs";
-const ACTIVITY: &str = "discrete/src/network/activity.rs";
-const AGREEMENT: &str = "discrete/src/network/agreement.rs";
-const BULLETIN: &str = "discrete/src/network/bulletin.rs";
-const ELECTION: &str = "discrete/src/network/election.rs";
-const LINEAGE: &str = "discrete/src/network/lineage.rs";
-const OFFERS: &str = "discrete/src/network/offers.rs";
-const PATH: &str = "discrete/src/network/path.rs";
-const RESERVATION: &str = "discrete/src/network/reservation.rs";
-const TABLES: &str = "discrete/src/network/tables.rs";
-const CROSSING: &str = "guards/src/crossing.rs";
-const VERDICT: &str = "guards/src/predicate/verdict.rs";
-const DUTY: &str = "verify/src/network/duty.rs";
-const TREE: &str = "verify/src/network/tree.rs";
-
-/// In the order of the files.
-const PROOFS: &[Proof] = &[
-    (
-        "points_in_their_own_half_planes_are_two_clearances_apart",
-        "own_side",
-        "continuous/src/geometry/cell.rs",
-    ),
-    ("no_corner_is_worse_than_the_worst", "worst_corner", ACCEPTANCE),
-    ("smaller_terms_have_no_worse_corner", "worst_corner", ACCEPTANCE),
-    ("a_sender_that_accepts_is_never_given_too_much", "is_acceptable", ACCEPTANCE),
-    ("consent_to_a_move_is_consent_to_less_of_it", "is_acceptable", ACCEPTANCE),
-    (
-        "what_is_admitted_meets_every_constraint",
-        "is_admitted",
-        "continuous/src/network/motion/mod.rs",
-    ),
-    ("reliability_is_flat_outside_of_the_transition", "reliability", RELIABILITY),
-    ("reliability_falls_from_one_to_zero", "reliability", RELIABILITY),
-    ("a_projected_multiplier_is_never_negative", "projected", DUAL),
-    ("a_multiplier_rises_while_the_reserve_is_missed", "dual_step", DUAL),
-    ("a_positive_part_is_never_negative", "positive_part", LOCAL),
-    ("the_local_minimiser_is_feasible_and_pays_for_used_time_only", "budget_price", LOCAL),
-    ("an_activity_answers_every_event_in_one_way", "DUTIES", ACTIVITY),
-    ("a_robot_leaves_a_fixed_post_when_it_is_replaced", "DUTIES", ACTIVITY),
-    ("settled_views_tell_every_vote", "is_settled", AGREEMENT),
-    ("a_vote_stands", "vote", AGREEMENT),
-    ("arrivals_are_known_together_if_each_is_known", "have_arrived", AGREEMENT),
-    ("a_view_of_another_path_changes_nothing", "merge", AGREEMENT),
-    ("the_newest_notice_wins_in_any_order", "merge", BULLETIN),
-    ("identities_are_totally_ordered", "is_newer_than", BULLETIN),
-    (
-        "a_robot_moves_against_nobody_that_relies_on_it",
-        "all_consent",
-        "discrete/src/network/consent.rs",
-    ),
-    ("merging_views_is_taking_a_maximum", "merge", ELECTION),
-    ("a_view_of_another_election_changes_nothing", "merge", ELECTION),
-    ("bids_are_ordered_by_rank_first_and_ties_go_to_the_higher_index", "best", ELECTION),
-    ("a_merge_is_the_union", "merge", "discrete/src/network/id_set.rs"),
-    ("a_way_is_extended_by_posts_that_are_not_on_it", "extended_by", LINEAGE),
-    ("an_exchange_conserves_duties_at_every_step", "conclude", OFFERS),
-    ("the_recruit_the_last_and_both_sides_of_a_crossing_break", "is_break_point", PATH),
-    ("every_place_before_the_last_break_point_is_in_one_subgroup", "subgroups", PATH),
-    ("no_more_is_granted_than_there_is_to_spare", "most", RESERVATION),
-    ("a_lease_ends_at_the_sender_first", "promise", RESERVATION),
-    ("a_phase_answers_every_step_in_one_way", "MISSION", TABLES),
-    ("every_phase_is_reached", "MISSION", TABLES),
-    ("the_end_is_heard_and_only_an_announcement_follows", "MISSION", TABLES),
-    ("crossings_alternate", "between_margins", CROSSING),
-    ("a_switch_keeps_its_state_within_the_band_only", "update", CROSSING),
-    ("logic_keeps_margins_and_verdicts_together", "and", VERDICT),
-    ("negation_follows_de_morgan", "opposite", VERDICT),
-    ("comparisons_agree_with_their_margins", "judge", VERDICT),
-    ("duties_are_conserved_exactly_by_permutations", "are_conserved", DUTY),
-    ("a_shift_along_the_path_keeps_break_points_held", "last_break_point", PATH),
-    ("after_each_round_a_robot_knows_one_link_more", "merge", ELECTION),
-    ("robots_that_hear_each_other_elect_the_best_bidder", "is_complete", ELECTION),
-    ("an_observer_may_see_what_the_table_allows", "is_reachable", DUTY),
-    ("a_gap_is_found_where_there_is_one", "first_gap", "verify/src/network/motion.rs"),
-    ("robots_that_have_heard_every_vote_form_the_same_subgroups", "is_break_point", AGREEMENT),
-    ("the_subgroups_of_any_votes_partition_the_path", "subgroups", PATH),
-    ("the_subgroups_of_any_votes_are_teams", "subgroups", PATH),
-    ("a_robot_that_avoids_its_own_lineage_keeps_the_tree", "closes_cycle", LINEAGE),
-    // That a tree stays one when a leaf is taken away is a lemma on trees; that robots leave only without
-    // children is explored.
-    ("a_robot_without_children_may_leave", "leads_to_access_point", TREE),
-    ("an_exchange_of_duties_keeps_the_tree", "conclude", OFFERS),
-    ("edges_give_parents_unless_a_robot_has_two", "parents_of", TREE),
-    ("the_connected_are_those_with_a_way_out", "mark_connected", TREE),
-];
-
-/// The words of a text.
-fn words(text: &str) -> BTreeSet<&str> {
-    text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect()
-}
-
-/// The functions of a file that begin at its margin, each with its text and its file.
-fn functions(path: &str) -> BTreeMap<String, String> {
-    let text = code(path);
-    let heads = text.match_indices("fn ").filter(|&(at, _)| at == 0 || text[..at].ends_with('\n'));
-    let end = |at: usize| text[at..].find("\n}").map_or(text.len(), |end| at + end);
-    heads
-        .map(|(at, _)| {
-            let name = text[at + 3..].split(['(', '<']).next().unwrap();
-            (name.to_owned(), text[at..end(at)].to_owned())
-        })
-        .collect()
-}
-
-/// Every harness, with what it and the functions that it calls in its file mention.
-fn harnesses() -> BTreeMap<String, BTreeSet<String>> {
-    let mut found = BTreeMap::new();
-    for folder in ["guards/src", "discrete/src", "continuous/src", "verify/src"] {
-        for path in files_below(folder).iter().map(|path| relative(path)) {
-            let text = code(&path);
-            if !text.contains("#[kani::proof]") {
-                continue;
-            }
-            let functions = functions(&path);
-            for part in text.split("#[kani::proof]").skip(1) {
-                let name = part.split_once("fn ").unwrap().1.split('(').next().unwrap();
-                found.insert(name.to_owned(), mentioned(name, &functions));
-            }
-        }
-    }
-    found
-}
-
-fn mentioned(name: &str, functions: &BTreeMap<String, String>) -> BTreeSet<String> {
-    let (mut seen, mut open) = (BTreeSet::new(), vec![name.to_owned()]);
-    while let Some(word) = open.pop() {
-        if seen.insert(word.clone())
-            && let Some(text) = functions.get(&word)
-        {
-            open.extend(words(text).into_iter().map(str::to_owned));
-        }
-    }
-    seen
-}
+/// What goes through a table of the product, and that table: a harness that mentions it has a constant assertion in its
+/// file that the table is shorter than `unwind` says.
+const WALKS: &[(&str, &str)] =
+    &[("DUTIES", "DUTIES.rows()"), ("MISSION", "MISSION.rows()"), ("closure", "Role::ALL")];
 
 #[test]
 fn every_harness_is_about_something_that_the_product_uses() {
-    let harnesses = harnesses();
-    let listed: BTreeSet<&str> = PROOFS.iter().map(|proof| proof.0).collect();
-    let known: BTreeSet<&str> = harnesses.keys().map(String::as_str).collect();
-    assert_eq!(listed, known, "every harness is listed, and nothing else");
-    for &(harness, subject, file) in PROOFS {
-        assert!(harnesses[harness].contains(subject), "{harness} does not mention {subject}");
+    let harnesses = by_name();
+    let listed = catalogue().harness;
+    let mut names: Vec<&String> = listed.iter().map(|entry| &entry.name).collect();
+    names.sort();
+    assert!(names.iter().eq(&harnesses.keys().collect::<Vec<_>>()), "{names:?}");
+    for Entry { name, about: (subject, file), .. } in &listed {
+        assert!(harnesses[name].mentions.contains(subject), "{name} does not mention {subject}");
         assert!(uses_of(subject, file).next().is_some(), "USES lacks {subject} of {file}");
     }
+}
+
+#[test]
+fn every_harness_is_one_that_the_tool_can_verify() {
+    let complaints: Vec<String> = harnesses().iter().flat_map(complaints).collect();
+    assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
+}
+
+#[test]
+fn every_table_that_a_harness_goes_through_is_shorter_than_its_bound() {
+    for harness in harnesses() {
+        for (_, table) in WALKS.iter().filter(|walk| harness.mentions.contains(walk.0)) {
+            let bound = format!("assert!({table}.len() < {})", harness.unwind);
+            let mut constants = harness.items.iter().filter_map(|item| match item {
+                syn::Item::Const(constant) => Some(text_of(&*constant.expr)),
+                _ => None,
+            });
+            let (file, name) = (&harness.file, &harness.name);
+            let is_bounded = constants.any(|it| it == bound);
+            assert!(is_bounded, "{file}: `{name}` needs const _: () = {bound};");
+        }
+    }
+}
+
+#[test]
+fn the_document_shows_every_harness() {
+    let (catalogue, harnesses) = (catalogue(), by_name());
+    let known = |entry: &Entry| {
+        let run = entry.kani.as_ref()?;
+        (run.digest == harnesses[&entry.name].digest).then_some(run.seconds?)
+    };
+    let times: Vec<f64> = catalogue.harness.iter().filter_map(known).collect();
+    let (count, total) = (catalogue.harness.len(), times.iter().sum::<f64>());
+    let longest = times.iter().copied().fold(0.0, f64::max);
+    let rows: String = catalogue.harness.iter().map(|it| row(it, &harnesses[&it.name])).collect();
+    let table = format!(
+        "{tool} has verified {verified} of the {count} harnesses in their present form, in {total:.0} s of processor \
+         time; the longest took {longest:.0} s.\n\n\
+         | group | harness | about, used by | drawn | values | cases | covers | Kani |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- |\n{rows}",
+        tool = catalogue.tool,
+        verified = times.len(),
+    );
     let begin =
-        "<!-- begin of the subjects: PLEACH_UPDATE_DOCS=1 cargo test --test it harnesses -->";
-    let end = "<!-- end of the subjects -->";
+        "<!-- begin of the harnesses: PLEACH_UPDATE_DOCS=1 cargo test --test it harnesses -->";
+    let end = "<!-- end of the harnesses -->";
     let document = read("docs/proofs.md");
     let (before, rest) = document.split_once(begin).unwrap();
     let (_, after) = rest.split_once(end).unwrap();
-    let rows: String = PROOFS
-        .iter()
-        .map(|(harness, subject, file)| {
-            let (.., user, _) = uses_of(subject, file).next().unwrap();
-            let user = match *user {
-                FOR_USERS => "for users; no automaton of the network uses it".to_owned(),
-                user => format!("[{}](../{user})", user.rsplit_once("src/").unwrap().1),
-            };
-            format!("| `{harness}` | [`{subject}`](../{file}) | {user} |\n")
-        })
-        .collect();
-    let table = format!("| harness | is about | used by |\n| --- | --- | --- |\n{rows}");
+    let all = catalogue.harness.iter().filter(|entry| entry.cases.is_some()).count();
+    let sentence = format!("{count} harnesses, {all} of them exhaustively");
+    assert!(document.contains(&sentence), "docs/proofs.md should say: {sentence}");
     let refreshed = format!("{before}{begin}\n\n{table}\n{end}{after}");
     keep_up_to_date("docs/proofs.md", &refreshed, "harnesses");
+}
+
+/// Prints what `proofs/harnesses.toml` needs when the tool has run.
+#[test]
+#[ignore]
+fn digests_of_the_harnesses() {
+    for Harness { name, digest, .. } in harnesses() {
+        println!("{digest} {name}");
+    }
+}
+
+fn by_name() -> BTreeMap<String, Harness> {
+    harnesses().into_iter().map(|harness| (harness.name.clone(), harness)).collect()
+}
+
+/// A row of the table.
+fn row(entry: &Entry, harness: &Harness) -> String {
+    let Entry { name, group, about: (subject, file), draws, values, .. } = entry;
+    let (.., user, _) = uses_of(subject, file).next().unwrap();
+    let user = match *user {
+        FOR_USERS => "for users".to_owned(),
+        user => format!("[{}](../{user})", user.rsplit_once("src/").unwrap().1),
+    };
+    let cases = entry.cases.map_or("random".to_owned(), |cases| cases.to_string());
+    let kani = match &entry.kani {
+        None => "—".to_owned(),
+        Some(run) if run.digest == harness.digest => format!("{}: {}", run.date, run.verdict()),
+        Some(run) => format!("changed since {}: {}", run.date, run.verdict()),
+    };
+    format!(
+        "| {group} | [`{name}`](../{harness_file}) | [`{subject}`](../{file}), {user} | {draws} | {values} | {cases} | \
+         {covers} | {kani} |\n",
+        harness_file = harness.file,
+        covers = cell_of_covers(harness)
+    )
+}
+
+/// The conditions of the covers, and how many others say that a branch is reached.
+fn cell_of_covers(harness: &Harness) -> String {
+    let covers = covers(harness);
+    let branches = covers.iter().filter(|cover| cover.is_none()).count();
+    let conditions = covers.iter().flatten().map(|it| {
+        let words: Vec<&str> = it.split_whitespace().collect();
+        format!("`{}`", words.join(" ").replace('|', r"\|"))
+    });
+    let mut parts: Vec<String> = conditions.collect();
+    match branches {
+        0 => {}
+        1 => parts.push("1 branch".to_owned()),
+        _ => parts.push(format!("{branches} branches")),
+    }
+    parts.join(", ")
+}
+
+/// What is wrong with a harness of this body, with four turns of loops at the most.
+fn wrong_with(body: &str) -> Vec<String> {
+    let file = "#[kani::proof] #[kani::unwind(5)] fn planted() { BODY } \
+        const PLACES: usize = 3; fn pair() -> [i16; 2] { [1, 2] } fn triple() -> [i16; PLACES] { [0; 3] }";
+    let harnesses = harnesses_of("planted.rs", &file.replace("BODY", body));
+    harnesses.iter().flat_map(complaints).collect()
+}
+
+#[test]
+fn a_branch_without_a_cover_is_refused() {
+    for sound in [
+        "if drawn { kani::cover!(); assert!(one); } else if other { kani::cover!(two); act(); }",
+        "match drawn { Some(it) => { kani::cover!(); assert!(it); } None => {} }",
+        "let one = if drawn { 1 } else { 2 };",
+        "for it in [1, 2] { assert!(it > 0); } for at in 0..PLACES { assert!(at < 3); }",
+        "for it in found { kani::cover!(); assert!(it > 0); }",
+        "kani::assume(drawn); kani::cover!(one);",
+    ] {
+        assert_eq!(wrong_with(sound), Vec::<String>::new(), "{sound}");
+    }
+    for (planted, what) in [
+        ("if drawn { assert!(one); }", "a branch without a cover"),
+        ("if drawn { kani::cover!(); act(); } else { act(); }", "a branch without a cover"),
+        ("match drawn { Some(it) => assert!(it), None => {} }", "a branch without a cover"),
+        ("for it in found { assert!(it > 0); }", "a branch without a cover"),
+        ("while drawn { act(); }", "a branch without a cover"),
+        ("kani::cover!(one); kani::assume(drawn);", "no cover follows the assumption"),
+    ] {
+        let found = wrong_with(planted);
+        assert!(matches!(&found[..], [it] if it.contains(what)), "{planted}: {found:?}");
+    }
+}
+
+#[test]
+fn an_unwind_that_is_too_small_for_a_comparison_is_refused() {
+    for sound in ["assert!(pair() == other);", "let (a, b) = (pair(), 1); assert!(a[0] == b);"] {
+        assert_eq!(wrong_with(sound), Vec::<String>::new(), "{sound}");
+    }
+    for planted in [
+        "assert!(triple() == other);",
+        "let (a, b) = (triple(), 1); kani::cover!(a == b);",
+        "let a: [u8; 5] = kani::any(); let b = a; assert!(drawn || c != b);",
+        "assert!(other == [first, second]);",
+        "let a = [0_u32; PLACES - 1]; assert!(a == other);",
+    ] {
+        let found = wrong_with(planted);
+        assert!(
+            matches!(&found[..], [it] if it.contains("bytes of an array")),
+            "{planted}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn helpers_neither_assert_nor_cover() {
+    let file = "#[kani::proof] #[kani::unwind(5)] fn planted() {} fn helper() { assert!(true); }";
+    let harnesses = harnesses_of("planted.rs", file);
+    let found: Vec<String> = harnesses.iter().flat_map(complaints).collect();
+    assert!(matches!(&found[..], [it] if it.contains("`helper` asserts or covers")), "{found:?}");
 }

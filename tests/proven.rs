@@ -11,7 +11,6 @@ use std::collections::BTreeSet;
 
 /// Functions that state what is proven, or show what only those who check want to see.
 const CLAIMS: &[(&str, &str)] = &[
-    ("is_feasible", "continuous/src/network/routing/local.rs"),
     ("keeps_posts_held", "discrete/src/network/activity.rs"),
     ("taking", "discrete/src/network/offers.rs"),
 ];

@@ -229,6 +229,36 @@ mod tests {
         prop::collection::vec((0.0..0.3f64, segment()), 1..5)
     }
 
+    /// Loads and what is none.
+    const LOADS: [f64; 9] = [0.0, 0.5, 0.6, FULL_LOAD, 1.0, 1.1, 1.2, f64::INFINITY, f64::NAN];
+
+    /// Moves are judged one after the other: a sender is given no load but those that it has accepted.
+    #[test]
+    fn a_sender_that_accepts_is_never_given_too_much() {
+        for (first, second) in LOADS.into_iter().flat_map(|it| LOADS.map(|other| (it, other))) {
+            for mut load in LOADS.into_iter().filter(|load| *load <= FULL_LOAD) {
+                for worst in [first, second] {
+                    if is_acceptable(worst, load) {
+                        load = worst;
+                    }
+                }
+                assert!(load <= FULL_LOAD);
+            }
+        }
+    }
+
+    /// So consent to a move is consent to what is left of it when movers halve theirs; and a sender that has too much
+    /// already accepts what does not give it more.
+    #[test]
+    fn consent_to_a_move_is_consent_to_less_of_it() {
+        for (worst, present) in LOADS.into_iter().flat_map(|it| LOADS.map(|other| (it, other))) {
+            for less in LOADS.into_iter().filter(|less| *less <= worst) {
+                assert!(!is_acceptable(worst, present) || is_acceptable(less, present));
+            }
+            assert!(is_acceptable(present, present) || present.is_nan());
+        }
+    }
+
     proptest! {
         #[test]
         fn no_pace_exceeds_the_worst_load(

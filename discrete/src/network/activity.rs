@@ -192,15 +192,39 @@ pub const fn keeps_posts_held(source: Activity, event: DutyEvent, target: Activi
 ///
 /// A robot that begins to wait on Σ keeps its role or becomes the recruit; what it does after it
 /// has waited, it does in the role that it had or as the recruit.
-pub fn may_follow(from: Role, to: Role) -> bool {
-    let leads_there = |row: &Row<Activity, DutyEvent>| {
-        let keeps = row.target == Activity::Waiting && row.source.can_be(from);
-        row.source.can_be(from)
-            && row.target.can_be(to)
-            && (!keeps || to == from || to == Role::Recruit || row.source.is_under_way())
-            && (row.source != Activity::Waiting || waits_as(from, row.target))
-    };
-    from == to || DUTIES.rows().iter().any(leads_there)
+pub const fn may_follow(from: Role, to: Role) -> bool {
+    FOLLOWERS[from as usize] & 1 << to as usize != 0
+}
+
+/// The roles that may follow each role, as bits: the compiler reads the table.
+const FOLLOWERS: [u8; Role::ALL.len()] = {
+    let mut followers = [0; Role::ALL.len()];
+    let (rows, mut from) = (DUTIES.rows(), 0);
+    while from < followers.len() {
+        let mut to = 0;
+        while to < followers.len() {
+            let (mut follows, mut at) = (from == to, 0);
+            while at < rows.len() {
+                follows |= leads_on(&rows[at], Role::ALL[from], Role::ALL[to]);
+                at += 1;
+            }
+            followers[from] |= (follows as u8) << to;
+            to += 1;
+        }
+        from += 1;
+    }
+    followers
+};
+
+/// Whether a robot in the role `from` may be in the role `to` once it has taken this transition.
+const fn leads_on(row: &Row<Activity, DutyEvent>, from: Role, to: Role) -> bool {
+    let waits = matches!(row.target, Activity::Waiting);
+    let keeps_role = from as u8 == to as u8 || matches!(to, Role::Recruit);
+    let has_waited = matches!(row.source, Activity::Waiting);
+    row.source.can_be(from)
+        && row.target.can_be(to)
+        && (!waits || keeps_role || row.source.is_under_way())
+        && (!has_waited || waits_as(from, row.target))
 }
 
 /// Whether a robot that waits on Σ in `role` may go on to `target`.

@@ -12,10 +12,12 @@ fn crossings_alternate() {
     for (before, after) in [(0, 1), (1, 2), (2, 3)] {
         match Crossing::between_margins(margins[before], margins[after]) {
             Crossing::Rising => {
+                kani::cover!();
                 assert!(!side);
                 side = true;
             }
             Crossing::Falling => {
+                kani::cover!();
                 assert!(side);
                 side = false;
             }
@@ -39,10 +41,13 @@ fn a_switch_keeps_its_state_within_the_band_only() {
         let is_on = band.update(was_on, margin);
         kani::cover!(is_on && margin < engage);
         if margin >= engage {
+            kani::cover!(!was_on);
             assert!(is_on);
         } else if margin >= release {
+            kani::cover!(is_on);
             assert!(is_on == was_on);
         } else {
+            kani::cover!(was_on);
             assert!(!is_on);
         }
     }

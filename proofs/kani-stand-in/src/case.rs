@@ -20,6 +20,8 @@ pub(crate) struct Case {
     pub(crate) source: Source,
     /// What was drawn, for messages.
     pub(crate) drawn: Vec<Drawn>,
+    /// The most values that a case which meets the assumptions has drawn.
+    pub(crate) values: usize,
     /// The places of satisfied covers, over all cases.
     pub(crate) covered: BTreeSet<(&'static str, u32, u32)>,
 }
@@ -80,7 +82,7 @@ thread_local! {
 
 /// Begins to run cases.
 pub(crate) fn begin(source: Source) {
-    let case = Case { source, drawn: Vec::new(), covered: BTreeSet::new() };
+    let case = Case { source, drawn: Vec::new(), values: 0, covered: BTreeSet::new() };
     CASE.with(|cell| *cell.borrow_mut() = Some(case));
 }
 
@@ -122,6 +124,8 @@ impl Odometer {
     /// of this many; none if no such value is left.
     pub(crate) fn draw(&mut self, choices: u32, admits: impl Fn(u32) -> bool) -> Option<u32> {
         if self.read == self.digits.len() {
+            // No run is begun to find that nothing is left.
+            let choices = (0..choices).rev().find(|&last| admits(last)).map_or(0, |last| last + 1);
             self.digits.push(Digit { ordinal: 0, choices });
         }
         let digit = &mut self.digits[self.read];

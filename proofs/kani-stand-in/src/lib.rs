@@ -8,7 +8,8 @@
 //! - otherwise, or once [`MOST_CASES`] combinations have been run, [`RANDOM_CASES`] cases are drawn
 //!   by a seeded generator that prefers small and extreme numbers;
 //! - [`assume`] drops a case, and a failed assertion names the harness and the drawn values;
-//! - a harness fails if a [`cover!`] of its body is never satisfied: it would hold vacuously.
+//! - a harness fails if a [`cover!`] of its body is never satisfied: it would hold vacuously;
+//! - it fails if `proofs/harnesses.toml` has other numbers of its cases and values.
 //!
 //! Under the real tool this library is not built: packages depend on it for their tests only, and
 //! `proofs/check types` hands it to the compiler to type-check harnesses as the tool sees them.

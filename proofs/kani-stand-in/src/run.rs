@@ -16,7 +16,8 @@ pub const RANDOM_CASES: u64 = 100_000;
 /// # Panics
 ///
 /// If the body panics, with the name of the harness and the values drawn; if no case meets the
-/// assumptions; and if one of the `covers` covers in the body is never satisfied, or there is none.
+/// assumptions; if one of the `covers` covers in the body is never satisfied, or there is none; and if
+/// `proofs/harnesses.toml` has other numbers of cases and values.
 pub fn run(harness: &str, covers: usize, body: impl Fn()) {
     assert!(covers > 0, "harness `{harness}` has no cover!: it could hold vacuously");
     case::begin(Source::Enumeration(Odometer::default()));
@@ -24,12 +25,27 @@ pub fn run(harness: &str, covers: usize, body: impl Fn()) {
         Some(count) => ("all", count),
         None => ("random", run_random_cases(harness, &body)),
     };
-    let covered = case::with(|case| case.covered.len());
+    let lines: Vec<u32> = case::with(|case| case.covered.iter().map(|place| place.1).collect());
     assert!(
-        covered >= covers,
-        "harness `{harness}`: {covered} of {covers} covers are ever satisfied"
+        lines.len() >= covers,
+        "harness `{harness}`: {} of {covers} covers are ever satisfied, in lines {lines:?}",
+        lines.len()
     );
-    println!("{harness}: {kind} {count} cases");
+    let values = case::with(|case| case.values);
+    println!("{harness}: {kind} {count} cases of {values} values at the most");
+    if let Some(listed) = listed(harness) {
+        let cases = if kind == "all" { format!("cases = {count}\n") } else { String::new() };
+        let found = format!("\nvalues = {values}\n{cases}");
+        let is_listed = listed.contains(&found) && listed.contains("\ncases") == (kind == "all");
+        assert!(is_listed, "harness `{harness}`: proofs/harnesses.toml should say:{found}");
+    }
+}
+
+/// What the list of harnesses says of one.
+fn listed(harness: &str) -> Option<&'static str> {
+    const LIST: &str = include_str!("../../harnesses.toml");
+    let mut entries = LIST.split("[[harness]]").skip(1);
+    entries.find(|entry| entry.contains(&format!("\nname = \"{harness}\"\n")))
 }
 
 /// How many cases met the assumptions; none if there are too many cases.
@@ -76,7 +92,10 @@ fn run_random_cases(harness: &str, body: &impl Fn()) -> u64 {
 fn run_case(harness: &str, body: &impl Fn()) -> Result<(), Ended> {
     case::with(|case| case.drawn.clear());
     match catch_unwind(AssertUnwindSafe(body)) {
-        Ok(()) => Ok(()),
+        Ok(()) => {
+            case::with(|case| case.values = case.values.max(case.drawn.len()));
+            Ok(())
+        }
         Err(payload) => match payload.downcast::<Ended>() {
             Ok(reason) => Err(*reason),
             Err(_) => {
@@ -130,7 +149,7 @@ mod tests {
             crate::assume(is_on);
             crate::cover!(!is_on);
         });
-        assert_eq!(message, "harness `sample`: 0 of 1 covers are ever satisfied");
+        assert_eq!(message, "harness `sample`: 0 of 1 covers are ever satisfied, in lines []");
     }
 
     #[test]

@@ -128,6 +128,21 @@ mod tests {
         assert_eq!(dual_step(MULTIPLIER_CAP, 1.0, -1.0, 0.0), MULTIPLIER_CAP);
     }
 
+    /// Multipliers of the whole orthant and residuals on both sides of the reserve, all exact in binary.
+    #[test]
+    fn a_multiplier_rises_while_the_reserve_is_missed() {
+        let reserve = 0.25;
+        for (multiplier, residual) in (0..=800).flat_map(|it| (-64..=64).map(move |of| (it, of))) {
+            let (before, residual) = (f64::from(multiplier) / 8.0, f64::from(residual) / 8.0);
+            for step in [0.125, 0.5, 1.0, 8.0] {
+                let after = dual_step(before, step, residual, reserve);
+                assert!((0.0..=MULTIPLIER_CAP).contains(&after));
+                assert_eq!(after > before, residual < reserve && before < MULTIPLIER_CAP);
+                assert_eq!(after < before, residual > reserve && before > 0.0);
+            }
+        }
+    }
+
     #[test]
     fn the_first_accelerated_step_is_a_plain_one() {
         let state = DualState::new(1.0).step(0.5, -0.5, 0.02);

@@ -34,9 +34,10 @@ fn settled_views_tell_every_vote() {
     let votes: [bool; PLACES] = kani::any();
     let (one, other) = (any_view(&votes), any_view(&votes));
     let both = merged(one.clone(), &other);
-    kani::cover!(both.is_settled(PLACES) && !one.is_settled(PLACES) && !other.is_settled(PLACES));
+    let was_settled = one.is_settled(PLACES) || other.is_settled(PLACES);
     assert!(both == merged(other, &one));
     if both.is_settled(PLACES) {
+        kani::cover!(!was_settled);
         for (place, vote) in votes.iter().enumerate() {
             assert!(both.is_break_point(place) == *vote);
         }
@@ -54,6 +55,7 @@ fn a_vote_stands() {
     for voter in 0..PLACES {
         // The number of the place is a constant in each round of this loop.
         if voter == place && before.voted.contains(voter) {
+            kani::cover!();
             view.vote(voter, kani::any());
         }
     }
@@ -67,21 +69,27 @@ fn a_vote_stands() {
 #[kani::unwind(6)]
 fn arrivals_are_known_together_if_each_is_known() {
     let (arrived, heard): ([bool; PLACES], [bool; PLACES]) = (kani::any(), kani::any());
+    let (yielding, yielded): (bool, u8) = (kani::any(), kani::any_where(|place| *place < 4));
     let (mut view, mut other) = (Agreement::new(ID), Agreement::new(ID));
+    // The number of the place is a constant in each round of this loop.
     for place in 0..PLACES {
         if arrived[place] {
+            kani::cover!();
             view.arrive(place);
         }
         if heard[place] {
+            kani::cover!();
             other.arrive(place);
         }
-    }
-    let (yielding, place): (bool, u8) = (kani::any(), kani::any_where(|place| *place < 4));
-    if yielding {
-        other.give_up(usize::from(place));
+        if yielding && place == usize::from(yielded) {
+            kani::cover!();
+            other.give_up(place);
+        }
     }
     view.merge(&other);
-    assert!(view.has_given_up(usize::from(place)) == yielding);
+    for place in 0..PLACES {
+        assert!(view.has_given_up(place) == (yielding && place == usize::from(yielded)));
+    }
     let (first, end): (u8, u8) =
         (kani::any_where(|first| *first < 4), kani::any_where(|end| *end <= 4));
     let places = usize::from(first)..usize::from(end);
@@ -103,6 +111,7 @@ fn a_view_of_another_path_changes_nothing() {
     for (place, vote) in others.iter().enumerate() {
         other.vote(place, *vote);
         if kani::any() {
+            kani::cover!();
             other.arrive(place);
         }
     }

@@ -50,16 +50,20 @@ fn an_exchange_conserves_duties_at_every_step() {
     for _ in 0..6 {
         let step: u8 = kani::any_where(|step| *step < 3);
         if step == 0 {
+            kani::cover!();
             mover.before = mover.now.clone();
             if !mover.now.are_under_way() {
+                kani::cover!();
                 mover.now.make_offer(PARKED, mover.duty);
             }
         } else if step == 1 {
+            kani::cover!();
             let heard = parked.heard();
             mover.before = mover.now.clone();
             let duty = heard.reply().and_then(|reply| mover.now.hear(MOVER, reply));
             mover.take(duty);
         } else {
+            kani::cover!();
             let heard = mover.heard();
             parked.before = parked.now.clone();
             let duty = parked.now.conclude(heard.offer(), heard.offers_made());
@@ -68,6 +72,7 @@ fn an_exchange_conserves_duties_at_every_step() {
                 && parked.now.reply().is_none()
                 && offer.asks(PARKED, answered)
             {
+                kani::cover!();
                 let given = if kani::any() { Some(parked.duty) } else { None };
                 parked.now.answer(MOVER, offer, given);
                 answered = Some(offer.number);

@@ -33,8 +33,9 @@ fn the_recruit_the_last_and_both_sides_of_a_crossing_break() {
 fn every_place_before_the_last_break_point_is_in_one_subgroup() {
     let chosen: [bool; PLACES] = kani::any();
     let (mut points, mut count) = ([0; PLACES], 1);
-    for (place, is_chosen) in chosen.into_iter().enumerate().skip(1) {
-        if is_chosen {
+    for (place, is_chosen) in chosen.iter().enumerate().skip(1) {
+        if *is_chosen {
+            kani::cover!();
             points[count] = place;
             count += 1;
         }
@@ -42,9 +43,11 @@ fn every_place_before_the_last_break_point_is_in_one_subgroup() {
     let place = usize::from(kani::any_where(|place: &u8| *place < 6));
     let (mut holding, mut end) = (0, 0);
     for subgroup in subgroups(&points[..count]) {
+        kani::cover!(subgroup.first > 0);
         assert!(subgroup.first == end);
         end = subgroup.end;
         if subgroup.places().contains(&place) {
+            kani::cover!();
             holding += 1;
         }
     }

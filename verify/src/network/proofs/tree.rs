@@ -68,15 +68,15 @@ fn a_robot_that_avoids_its_own_lineage_keeps_the_tree() {
 }
 
 /// Any tree of four robots: one without children may leave, and all others still come to
-/// an access point. A lemma on trees, by the functions of the judge; that robots leave only without children is
-/// explored.
+/// an access point. A lemma on trees as a model, by the functions of the judge; that robots leave only without
+/// children is explored.
 #[kani::proof]
 #[kani::unwind(7)]
-fn a_robot_without_children_may_leave() {
+fn a_model_of_the_tree_stays_rooted_without_a_leaf() {
     let parents = any_tree();
     let (leaver, other) = (below(ROBOTS), below(ROBOTS));
-    for parent in parents {
-        kani::assume(parent != Some(leaver));
+    for parent in &parents {
+        kani::assume(*parent != Some(leaver));
     }
     let mut changed = parents;
     changed[leaver] = None;
@@ -102,6 +102,7 @@ fn an_exchange_of_duties_keeps_the_tree() {
     let (mut of_mover, mut of_parked) = (Offers::new(), Offers::new());
     of_mover.make_offer(parked, posts[mover]);
     if let Some(offer) = of_mover.offer() {
+        kani::cover!();
         of_parked.answer(mover, offer, Some(posts[parked]));
     }
     let taken = of_parked.reply().and_then(|reply| of_mover.hear(mover, reply));
@@ -114,6 +115,7 @@ fn an_exchange_of_duties_keeps_the_tree() {
     for (robot, own) in posts.iter().enumerate() {
         for (post, holder) in holders.iter_mut().enumerate() {
             if post == *own {
+                kani::cover!();
                 *holder = robot;
             }
         }
@@ -123,6 +125,7 @@ fn an_exchange_of_duties_keeps_the_tree() {
         assert!(holders[post] < ROBOTS);
         for (robot, parent) in changed.iter_mut().enumerate() {
             if robot == holders[post] {
+                kani::cover!();
                 *parent = parents[post].map(|parent| holders[parent]);
             }
         }

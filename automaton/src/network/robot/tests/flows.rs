@@ -299,6 +299,33 @@ fn grants_last_no_longer_than_the_flows_that_carry_them() {
     assert_eq!(until(NOW + 5, Some((0.2, NOW + 3))), (0.2, NOW + 5));
 }
 
+/// Robot 5 holds 0.1, half of it for longer, and wants 0.2, which is carried for less long than what it holds: that cannot
+/// be promised beside what has been. It is answered once with what is kept for it, and robot 6 gets what there is to spare.
+#[test]
+fn what_cannot_be_promised_is_left_for_others() {
+    let (mut robot, _) = granted(0.3);
+    let mut outputs = NodeOutputs::of(0);
+    robot.held_flow(ROBOTS).lease = Lease::of(f64::INFINITY, NOW + 3);
+    let mut kept = Lease::of(0.1, NOW + 5);
+    assert!(kept.promise(0.05, NOW + 7));
+    robot.reservations[0].lease = kept;
+    let number = RequestNumber { period: NOW, number: 2 };
+    for (from, held) in [(5, 0.1), (6, 0.0)] {
+        robot.hear_request(from, FlowRequest { number, held, wanted: 0.2 });
+    }
+    robot.take_in_requests(&mut outputs);
+    let answers = grants(&mut outputs);
+    let [(Destination::One(5), refused), (Destination::One(6), granted)] = answers[..] else {
+        panic!("it answers both: {answers:?}")
+    };
+    let part = Some(GrantedPart { flow: 0.05, until: NOW + 7 });
+    assert_eq!(refused, FlowGrant { number, flow: 0.1, until: NOW + 5, part });
+    assert!((granted.flow - 0.2).abs() < 1e-9 && granted.until == NOW + 3, "{granted:?}");
+    robot.has_flow_news = true;
+    robot.take_in_requests(&mut outputs);
+    assert!(grants(&mut outputs).is_empty(), "nothing has changed");
+}
+
 /// A grant of a part holds when all of it has ended.
 #[test]
 fn what_is_granted_for_longer_is_left_when_the_rest_ends() {
