@@ -13,6 +13,7 @@ use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Fleet, LinkCount, Remark, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
+use pleach::task_list;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -21,11 +22,12 @@ pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
     let mut worst = Status::Done;
     let (sources, mut mistakes) = Source::all(&arguments.scenarios)?;
     let count = count_runs(sources.len(), &arguments.set, 1)?;
+    let tasks = arguments.tasks.as_deref().map(task_list::read).transpose()?;
     let mut number = 0;
     for source in sources {
         for settings in Sweep::combinations(&arguments.set) {
             number += 1;
-            let scenario = match source.parse(&settings) {
+            let scenario = match source.parse(&settings, tasks.as_deref()) {
                 Ok(scenario) => scenario,
                 Err(error) => {
                     mistakes.push(error);
