@@ -264,6 +264,8 @@ fn tables_hold_what_the_runs_are() {
             ("periods", summary.periods()),
             ("recruits", summary.recruits()),
             ("stationary_points", summary.stationary_points()),
+            ("tree_links", summary.links().last().links),
+            ("links_through_walls", summary.links().last().through_walls),
         ];
         for (name, count) in counts {
             assert_eq!(row[name].as_u64(), Some(count as u64), "{name} of {path}");
