@@ -14,7 +14,7 @@ use crate::automaton::network::record::{End, MissionEvent, Snapshot};
 use crate::automaton::network::scenario::{InvalidScenario, ValidScenario};
 use crate::discrete::network::activity::may_follow;
 use crate::trace::{TraceEntry, TraceError, TraceReader};
-use crate::verify::network::{Extremes, Instant, Property, Referee, Violation};
+use crate::verify::network::{Extremes, Instant, Property, Referee, TreeLinks, Violation};
 
 /// What a trace amounts to.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub enum Verdict {
         end: Box<End>,
         /// How near it came to its bounds.
         extremes: Extremes,
+        /// The links of the tree that crossed walls.
+        links: TreeLinks,
     },
     /// The first thing that is not.
     Violated(Violation),
@@ -50,7 +52,9 @@ pub enum JudgeError {
 pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
     let scenario = ValidScenario::new(trace.scenario().clone())?;
     let mut reading = Reading {
+        scenario: &scenario,
         judge: Referee::new(&scenario, trace.faults(), may_follow),
+        links: TreeLinks::default(),
         order: Order::new(),
         periods: 0,
         end: None,
@@ -65,7 +69,9 @@ pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
 
 /// A trace that is being read.
 struct Reading<'a> {
+    scenario: &'a ValidScenario,
     judge: Referee<'a>,
+    links: TreeLinks,
     order: Order,
     periods: usize,
     end: Option<End>,
@@ -81,6 +87,7 @@ impl Reading<'_> {
             Some(Told::Period(snapshot, events)) => {
                 self.periods += 1;
                 self.judge.observe(&snapshot, &events)?;
+                self.links.observe(&snapshot, self.scenario.site());
             }
             Some(Told::End(end)) => {
                 self.judge.conclude(&end)?;
@@ -94,8 +101,8 @@ impl Reading<'_> {
     fn close(self) -> Verdict {
         match self.end {
             Some(end) => {
-                let extremes = self.judge.extremes().clone();
-                Verdict::Sound { periods: self.periods, end: Box::new(end), extremes }
+                let (extremes, links) = (self.judge.extremes().clone(), self.links);
+                Verdict::Sound { periods: self.periods, end: Box::new(end), extremes, links }
             }
             None => Verdict::Violated(self.order.fault(
                 Property::Outcome,

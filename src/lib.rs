@@ -186,6 +186,8 @@ pub mod spaceex;
 pub mod starts;
 pub mod story;
 pub mod summary;
+#[cfg(feature = "cli")]
+pub mod task_list;
 pub mod trace;
 
 pub use pleach_automaton as automaton;

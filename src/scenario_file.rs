@@ -6,9 +6,9 @@ mod shape;
 
 pub use setting::{Setting, SettingError};
 
-use crate::automaton::network::scenario::{KeyPath, Scenario, ValidScenario};
+use crate::automaton::network::scenario::{KeyPath, KeyStep, Scenario, Task, ValidScenario};
 use location::{Lines, Located};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -70,6 +70,22 @@ pub enum MistakePlace {
     },
     /// In a setting that replaces a value of the text, such as `control.period=0`.
     Setting(String),
+    /// In a row of a table beside the text.
+    Table {
+        /// The file of the table.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+    },
+}
+
+/// A task from elsewhere than the text of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ListedTask {
+    /// The task.
+    pub task: Task,
+    /// Where mistakes in it stand.
+    pub place: MistakePlace,
 }
 
 impl fmt::Display for Mistake {
@@ -77,6 +93,7 @@ impl fmt::Display for Mistake {
         match &self.place {
             MistakePlace::Text { line, column } => write!(formatter, "{line}:{column}: ")?,
             MistakePlace::Setting(setting) => write!(formatter, "{setting}: ")?,
+            MistakePlace::Table { path, line } => write!(formatter, "{}:{line}: ", path.display())?,
         }
         if !self.key.is_empty() {
             write!(formatter, "{}: ", self.key)?;
@@ -138,6 +155,20 @@ pub fn parse_with(
     path: &Path,
     settings: &[Setting],
 ) -> Result<ValidScenario, ScenarioError> {
+    parse_with_tasks(text, path, settings, None)
+}
+
+/// Reads a scenario from `text`, where there are `tasks` with these in the place of its own, and then with some of its
+/// values replaced.
+///
+/// # Errors
+/// As [`parse_with`].
+pub fn parse_with_tasks(
+    text: &str,
+    path: &Path,
+    settings: &[Setting],
+    tasks: Option<&[ListedTask]>,
+) -> Result<ValidScenario, ScenarioError> {
     let mistaken = |mistakes| ScenarioError::Mistaken { path: path.into(), mistakes };
     let lines = Lines::of(text);
     let syntax = |error: &toml::de::Error| {
@@ -145,19 +176,28 @@ pub fn parse_with(
         let message = format!("not TOML: {} in `{}`", error.message(), lines.around(start));
         mistaken(vec![Mistake { place: lines.place(start), key: String::new(), message }])
     };
-    // A value that a setting has replaced does not stand in the text.
+    // A value that a setting has replaced does not stand in the text, and neither does a listed task.
     let mistake = |start: usize, key: &KeyPath, message: String| {
         let setting = settings.iter().rev().find(|setting| setting.covers(key));
-        let place = setting.map_or_else(
-            || lines.place(start),
-            |setting| MistakePlace::Setting(setting.to_string()),
-        );
+        let place = setting
+            .map(|setting| MistakePlace::Setting(setting.to_string()))
+            .or_else(|| Some(tasks?.get(task_of(key)?)?.place.clone()))
+            .unwrap_or_else(|| lines.place(start));
         Mistake { place, key: key.to_string(), message }
     };
 
     let mut file = DeTable::parse(text).map_err(|error| syntax(&error))?;
     if file.get_ref().is_empty() {
         return Err(ScenarioError::Empty { path: path.into() });
+    }
+    let listed = tasks.map(as_text).transpose().map_err(|error| {
+        let (place, message) = (lines.place(0), error.to_string());
+        mistaken(vec![Mistake { place, key: "task".into(), message }])
+    })?;
+    if let Some(listed) = &listed {
+        let list = DeTable::parse(listed).map_err(|error| syntax(&error))?;
+        file.get_mut().remove("task");
+        file.get_mut().extend(list.into_inner());
     }
     for setting in settings {
         setting.apply(file.get_mut()).map_err(|message| {
@@ -180,10 +220,29 @@ pub fn parse_with(
     })
 }
 
+/// Tasks as the text of a scenario states them, so that settings can replace their values, too.
+fn as_text(tasks: &[ListedTask]) -> Result<String, toml::ser::Error> {
+    #[derive(Serialize)]
+    struct Table {
+        task: Vec<Task>,
+    }
+    toml::to_string(&Table { task: tasks.iter().map(|listed| listed.task).collect() })
+}
+
+/// The number of the task that a key leads into.
+fn task_of(key: &KeyPath) -> Option<usize> {
+    match key.steps() {
+        [KeyStep::Key(table), KeyStep::Index(task), ..] if table == "task" => Some(*task),
+        _ => None,
+    }
+}
+
 fn one_per_line(path: &Path, mistakes: &[Mistake]) -> String {
     let line = |mistake: &Mistake| match mistake.place {
         MistakePlace::Text { .. } => format!("{}:{mistake}", path.display()),
-        MistakePlace::Setting(_) => format!("{} with {mistake}", path.display()),
+        MistakePlace::Setting(_) | MistakePlace::Table { .. } => {
+            format!("{} with {mistake}", path.display())
+        }
     };
     mistakes.iter().map(line).collect::<Vec<_>>().join("\n")
 }

@@ -1,14 +1,15 @@
 //! What a person needs in order to judge a mission that has ended.
 
-use crate::automaton::network::KernelTimes;
 use crate::automaton::network::phrase;
 use crate::automaton::network::record::{MissionEvent, Outcome, Snapshot};
-use crate::automaton::network::scenario::{Scenario, Settings};
+use crate::automaton::network::scenario::{LinkCount, Settings, ValidScenario};
+use crate::automaton::network::{KernelTimes, Site};
 use crate::figures::quantity;
 use crate::mission::{Completed, Watcher};
-use crate::verify::network::{Extreme, Extremes};
+use crate::verify::network::{Extreme, Extremes, TreeLinks};
 use std::fmt;
 use std::io;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A watcher that collects the summary; shown with `{}` it is a short text.
@@ -21,6 +22,8 @@ pub struct Summary {
     stationary_points: usize,
     periods: usize,
     seconds: f64,
+    site: Arc<Site>,
+    links: TreeLinks,
     completed: Option<(Completed, Duration)>,
 }
 
@@ -135,12 +138,26 @@ pub(crate) fn measured(extremes: &Extremes, settings: &Settings) -> Vec<Measured
     measured.collect()
 }
 
+/// How many links of the tree cross walls, as a clause.
+pub(crate) fn links_told(links: &TreeLinks) -> String {
+    let of = |LinkCount { links, through_walls }: LinkCount| format!("{through_walls} of {links}");
+    let at_most = match links.most() {
+        Some((most, instant)) => format!("at most {}, at k = {}", of(most), instant.step),
+        None => "none before".to_owned(),
+    };
+    format!("{} links of the tree at the end; {at_most}", of(links.last()))
+}
+
+/// What links through walls may mean for the user.
+pub(crate) const LINKS_WARNING: &str = "more than a tenth of the links of the tree cross walls, which the model of \
+                                        the radio does not see; ranges should be those that hold through walls";
+
 impl Summary {
     /// The summary of a mission that has not begun.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &ValidScenario) -> Self {
         Self {
             name: scenario.name.clone(),
-            settings: Settings::resolve(scenario),
+            settings: *scenario.settings(),
             tasks: (scenario.task.iter())
                 .map(|task| TaskSummary {
                     position: task.position,
@@ -153,6 +170,8 @@ impl Summary {
             stationary_points: 0,
             periods: 0,
             seconds: 0.0,
+            site: Arc::clone(scenario.site()),
+            links: TreeLinks::default(),
             completed: None,
         }
     }
@@ -195,6 +214,11 @@ impl Summary {
         self.seconds
     }
 
+    /// The links of the tree, and how many of them crossed walls.
+    pub fn links(&self) -> &TreeLinks {
+        &self.links
+    }
+
     /// The number of local stationary points met.
     pub fn stationary_points(&self) -> usize {
         self.stationary_points
@@ -232,6 +256,7 @@ impl Watcher for Summary {
                 task.holder = Some(robot);
             }
         }
+        self.links.observe(snapshot, &self.site);
         self.periods = snapshot.step.saturating_add(1);
         self.seconds = snapshot.time + self.settings.period;
         Ok(())
@@ -244,6 +269,10 @@ impl fmt::Display for Summary {
         self.write_tasks(formatter)?;
         writeln!(formatter, "  recruits elected    {}", self.recruits)?;
         writeln!(formatter, "  stationary points   {}", self.stationary_points)?;
+        writeln!(formatter, "  links through walls {}", links_told(&self.links))?;
+        if self.links.are_worth_a_warning() {
+            writeln!(formatter, "  warning             {LINKS_WARNING}")?;
+        }
         let Some((completed, elapsed)) = &self.completed else { return Ok(()) };
         self.write_extremes(&completed.extremes, formatter)?;
         self.write_times(&completed.times, *elapsed, formatter)

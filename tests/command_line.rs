@@ -264,6 +264,8 @@ fn tables_hold_what_the_runs_are() {
             ("periods", summary.periods()),
             ("recruits", summary.recruits()),
             ("stationary_points", summary.stationary_points()),
+            ("tree_links", summary.links().last().links),
+            ("links_through_walls", summary.links().last().through_walls),
         ];
         for (name, count) in counts {
             assert_eq!(row[name].as_u64(), Some(count as u64), "{name} of {path}");
@@ -476,4 +478,43 @@ fn shells_and_man_know_the_commands() {
         let said = said(&output.stdout);
         assert!(said.contains("completions") && said.contains("check"), "{said}");
     }
+}
+
+/// The tasks of the room, among them one that no robot can service, come from a table.
+#[test]
+fn tasks_come_from_a_table() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("task-table");
+    std::fs::create_dir_all(&folder).unwrap();
+    let table = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let room = "tests/scenarios/room.toml";
+    let near = table("near.csv", "y,x,lasts\n0.5,0.9,20\n0.6,0.8,\n");
+    let run = pleach(&["run", room, "--tasks", &near, "--no-figures", "--quiet"]);
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    let told = said(&run.stdout);
+    assert!(told.starts_with("room: 2 of 2 tasks serviced"), "{told}");
+    assert!(told.contains("(0.9, 0.5)") && told.contains("(0.8, 0.6)"), "{told}");
+
+    let check = |tasks: &str, more: &[&str]| {
+        let arguments = ["check", room, "--no-figures", "--tasks", tasks];
+        let output = pleach(&[&arguments[..], more].concat());
+        (output.status.code(), said(&output.stdout), said(&output.stderr))
+    };
+    let walled = table("walled.csv", "x,y\n0.9,0.5\n1.1,0.5\n");
+    let (status, told, _) = check(&walled, &[]);
+    assert_eq!(status, Some(3), "{told}");
+    assert!(told.contains("task[1].position: no robot can service it"), "{told}");
+    assert_eq!(check(&walled, &["--set", "task[1].position=[0.8,0.6]"]).0, Some(0));
+
+    let late = table("late.csv", "x,y,announced\n0.9,0.5,7\n0.8,0.6,3\n");
+    let (status, _, told) = check(&late, &[]);
+    assert_eq!(status, Some(2));
+    assert!(told.contains("late.csv:3: task[1].announced: "), "{told}");
+    let wrong = table("wrong.csv", "x,y\n0.9,half\n");
+    let (status, _, told) = check(&wrong, &[]);
+    assert_eq!(status, Some(2));
+    assert!(told.contains("wrong.csv:2: column y: \"half\" stands where a number"), "{told}");
 }

@@ -118,6 +118,10 @@ pub struct RunArguments {
     /// FROM..TO:COUNT runs it with COUNT values, several sweeps with all combinations
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<Sweep>,
+    /// Take the tasks from a CSV file instead of the scenarios: the first row names the columns x
+    /// and y, and any of announced, withdrawn, lasts, priority and access_point
+    #[arg(long, value_name = "FILE")]
+    pub tasks: Option<PathBuf>,
     /// Run every scenario COUNT times, each time with robots at other random starts
     #[arg(long, value_name = "COUNT", allow_negative_numbers = true,
         value_parser = clap::value_parser!(u64).range(1..=100_000))]
@@ -176,6 +180,9 @@ pub struct CheckArguments {
     /// Set a value of the scenario, such as control.step_radius=0.02
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<Sweep>,
+    /// Take the tasks from a CSV file instead of the scenarios
+    #[arg(long, value_name = "FILE")]
+    pub tasks: Option<PathBuf>,
     /// Draw the start (SVG) into FOLDER [default: figures/<name of the scenario>]
     #[arg(long, value_name = "FOLDER", conflicts_with = "no_figures")]
     pub figures: Option<PathBuf>,

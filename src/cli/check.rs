@@ -8,24 +8,29 @@ use super::source::Source;
 use super::status::{Failure, Status};
 use super::sweep::Sweep;
 use super::terminal;
+use pleach::automaton::network::Site;
 use pleach::automaton::network::phrase;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Fleet, LinkCount, Remark, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
+use pleach::task_list;
+use pleach::verify::network::TreeLinks;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Checks scenarios one after another, and draws their starts.
 pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
     let mut worst = Status::Done;
     let (sources, mut mistakes) = Source::all(&arguments.scenarios)?;
     let count = count_runs(sources.len(), &arguments.set, 1)?;
+    let tasks = arguments.tasks.as_deref().map(task_list::read).transpose()?;
     let mut number = 0;
     for source in sources {
         for settings in Sweep::combinations(&arguments.set) {
             number += 1;
-            let scenario = match source.parse(&settings) {
+            let scenario = match source.parse(&settings, tasks.as_deref()) {
                 Ok(scenario) => scenario,
                 Err(error) => {
                     mistakes.push(error);
@@ -34,9 +39,10 @@ pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
             };
             let name = source.name.display().to_string();
             let planned = Planned { number, settings, ..Planned::once(name, scenario) };
-            let drawing = draw(&planned, count, arguments)?;
+            let opening = Opening::of(&planned)?;
+            let drawing = draw(&planned, &opening, count, arguments)?;
             let remarks = planned.scenario.remarks();
-            let told = report(&planned, &remarks, drawing);
+            let told = report(&planned, opening.links.last(), &remarks, drawing);
             let told = terminal::wrapped(&told, terminal::width(), terminal::SUMMARY_INDENT);
             output::say(&told)?;
             if remarks.iter().any(|remark| matches!(remark, Remark::Task { .. })) {
@@ -48,17 +54,25 @@ pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
 }
 
 /// What the scenario holds, and what is worth a remark.
-fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> String {
+fn report(
+    planned: &Planned,
+    tree: LinkCount,
+    remarks: &[Remark],
+    drawing: Option<PathBuf>,
+) -> String {
     let Planned { source, scenario, settings, .. } = planned;
     let resolved = scenario.settings();
     let set: String = settings.iter().map(|setting| format!(" with {setting}")).collect();
-    let LinkCount { links, through_walls } = scenario.count_links();
+    let at_start = |LinkCount { links, through_walls }: LinkCount| {
+        format!("{links} at the start, {through_walls} of them through walls")
+    };
     let mut rows = vec![
         ("workspace", workspace(scenario)),
         ("access points", scenario.access_point.len().to_string()),
         ("robots", scenario.robot.len().to_string()),
         ("tasks", scenario.task.len().to_string()),
-        ("links", format!("{links} at the start, {through_walls} of them through walls")),
+        ("links", at_start(scenario.count_links())),
+        ("links of the tree", at_start(tree)),
         ("longest new link", longest_link(scenario)),
         (
             "clearance",
@@ -134,6 +148,7 @@ fn workspace(scenario: &ValidScenario) -> String {
 /// Draws the network before its first move, one of `count`, and says where.
 fn draw(
     planned: &Planned,
+    opening: &Opening,
     count: usize,
     arguments: &CheckArguments,
 ) -> Result<Option<PathBuf>, Failure> {
@@ -148,25 +163,34 @@ fn draw(
         Some(folder) => folder.join(name),
     };
     output::create_folder(&folder)?;
-    let mut opening = Opening::default();
-    mission::run(scenario, &mut [&mut opening])?;
-    let Some(snapshot) = opening.snapshot else { return Ok(None) };
+    let Some(snapshot) = &opening.snapshot else { return Ok(None) };
     let plan = Plan::of(scenario);
     let title = format!("{}: the start", scenario.name);
-    let picture = plan.render(&Scene { snapshot: &snapshot, title: &title, trails: &[] });
+    let picture = plan.render(&Scene { snapshot, title: &title, trails: &[] });
     let path = folder.join("start.svg");
     output::write(&path, &picture)?;
     Ok(Some(path))
 }
 
 /// Keeps the first snapshot of a mission and ends it.
-#[derive(Default)]
 struct Opening {
+    site: Arc<Site>,
     snapshot: Option<Snapshot>,
+    links: TreeLinks,
+}
+
+impl Opening {
+    fn of(planned: &Planned) -> Result<Self, Failure> {
+        let site = Arc::clone(planned.scenario.site());
+        let mut opening = Opening { site, snapshot: None, links: TreeLinks::default() };
+        mission::run(&planned.scenario, &mut [&mut opening])?;
+        Ok(opening)
+    }
 }
 
 impl Watcher for Opening {
     fn observe(&mut self, snapshot: &Snapshot, _: &[MissionEvent]) -> io::Result<()> {
+        self.links.observe(snapshot, &self.site);
         self.snapshot = Some(snapshot.clone());
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::arguments::JudgeArguments;
 use super::status::{Failure, Status};
 use super::{output, source};
+use crate::summary::links_told;
 use pleach::automaton::network::scenario::Settings;
 use pleach::judge::{Verdict, judge};
 use pleach::trace::TraceReader;
@@ -20,10 +21,14 @@ pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
     let faults = judged_faults(&Settings::resolve(reader.scenario()), reader.faults());
     let whole = if faults.are_none() { "" } else { ", judged by what must hold under any fault" };
     match judge(reader).map_err(|error| spoiled(error.to_string()))? {
-        Verdict::Sound { periods, end, .. } => {
+        Verdict::Sound { periods, end, links, .. } => {
             let (trace, name) = (path.display(), end.outcome.name().replace('_', " "));
+            let crossing = match links.most() {
+                Some(_) => format!("; links through walls: {}", links_told(&links)),
+                None => String::new(),
+            };
             output::say(&format!(
-                "{trace}: sound, {periods} control periods{whole}; the outcome is: {name}\n"
+                "{trace}: sound, {periods} control periods{whole}; the outcome is: {name}{crossing}\n"
             ))?;
             Ok(Status::Done)
         }

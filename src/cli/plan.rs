@@ -8,6 +8,7 @@ use pleach::automaton::network::record::Faults;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::scenario_file::Setting;
 use pleach::starts;
+use pleach::task_list;
 use pleach::verify::network::storm::Storm;
 
 /// The most runs of one call.
@@ -52,10 +53,11 @@ pub fn plan(arguments: &RunArguments) -> Result<Vec<Planned>, Failure> {
         None => vec![None],
         Some(repeats) => (0..repeats).map(|run| Some(arguments.seed.wrapping_add(run))).collect(),
     };
+    let tasks = arguments.tasks.as_deref().map(task_list::read).transpose()?;
     let mut runs = Vec::with_capacity(count);
     for source in &sources {
         for settings in &combinations {
-            let scenario = match source.parse(settings) {
+            let scenario = match source.parse(settings, tasks.as_deref()) {
                 Ok(scenario) => scenario,
                 Err(error) => {
                     mistakes.push(error);

@@ -2,6 +2,7 @@
 
 use super::plan::Planned;
 use super::status::Status;
+use pleach::automaton::network::scenario::LinkCount;
 use pleach::mission::Completed;
 use pleach::summary::Summary;
 use pleach::verify::network::Extreme;
@@ -39,6 +40,12 @@ pub struct Record {
     pub recruits: usize,
     /// The number of stationary points of the primary team.
     pub stationary_points: usize,
+    /// The number of links of the tree at the end.
+    pub tree_links: usize,
+    /// How many of these cross walls.
+    pub links_through_walls: usize,
+    /// The largest number of links of the tree that crossed walls at the same time.
+    pub most_links_through_walls: usize,
     /// The smallest distance of two robots.
     pub smallest_distance: Option<f64>,
     /// The smallest distance of a robot from a wall.
@@ -52,7 +59,7 @@ pub struct Record {
 }
 
 /// The columns of the CSV table before and after those of the keys that were set.
-const COLUMNS: ([&str; 3], [&str; 14]) = (
+const COLUMNS: ([&str; 3], [&str; 17]) = (
     ["run", "source", "scenario"],
     [
         "seed",
@@ -64,6 +71,9 @@ const COLUMNS: ([&str; 3], [&str; 14]) = (
         "seconds",
         "recruits",
         "stationary_points",
+        "tree_links",
+        "links_through_walls",
+        "most_links_through_walls",
         "smallest_distance",
         "smallest_clearance",
         "smallest_residual",
@@ -77,6 +87,7 @@ impl Record {
     pub fn of(run: &Planned, summary: &Summary, completed: &Completed) -> Self {
         let end = &completed.end;
         let status = Status::from(end.outcome);
+        let LinkCount { links, through_walls } = summary.links().last();
         let value = |extreme: &Option<Extreme>| extreme.as_ref().map(|extreme| extreme.value);
         Self {
             outcome: end.outcome.name().into(),
@@ -86,6 +97,12 @@ impl Record {
             seconds: summary.seconds(),
             recruits: summary.recruits(),
             stationary_points: summary.stationary_points(),
+            tree_links: links,
+            links_through_walls: through_walls,
+            most_links_through_walls: summary
+                .links()
+                .most()
+                .map_or(0, |(most, _)| most.through_walls),
             smallest_distance: value(&completed.extremes.pair_distance),
             smallest_clearance: value(&completed.extremes.clearance),
             smallest_residual: value(&completed.extremes.residual),
@@ -113,6 +130,9 @@ impl Record {
             seconds: 0.0,
             recruits: 0,
             stationary_points: 0,
+            tree_links: 0,
+            links_through_walls: 0,
+            most_links_through_walls: 0,
             smallest_distance: None,
             smallest_clearance: None,
             smallest_residual: None,
@@ -121,7 +141,7 @@ impl Record {
         }
     }
 
-    fn cells(&self) -> [String; 14] {
+    fn cells(&self) -> [String; 17] {
         let optional =
             |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
         [
@@ -134,6 +154,9 @@ impl Record {
             self.seconds.to_string(),
             self.recruits.to_string(),
             self.stationary_points.to_string(),
+            self.tree_links.to_string(),
+            self.links_through_walls.to_string(),
+            self.most_links_through_walls.to_string(),
             optional(self.smallest_distance),
             optional(self.smallest_clearance),
             optional(self.smallest_residual),

@@ -21,7 +21,10 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     if arguments.pdf && !cfg!(feature = "pdf") {
         return Err(Failure::Without { what: "--pdf", feature: "pdf" });
     }
-    output::check_places(&arguments.scenarios, data_outputs(arguments))?;
+    output::check_places(
+        arguments.scenarios.iter().chain(&arguments.tasks),
+        data_outputs(arguments),
+    )?;
     let runs = plan(arguments)?;
     check_tables(arguments)?;
     let interrupt = Interrupt::listen()?;

@@ -2,7 +2,7 @@
 
 use super::status::Failure;
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::scenario_file::{self, ScenarioError, Setting};
+use pleach::scenario_file::{self, ListedTask, ScenarioError, Setting};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -70,9 +70,13 @@ impl Source {
         }
     }
 
-    /// The scenario with these settings.
-    pub fn parse(&self, settings: &[Setting]) -> Result<ValidScenario, ScenarioError> {
-        scenario_file::parse_with(&self.text, &self.name, settings)
+    /// The scenario with these settings; if there are `tasks`, with these in the place of its own.
+    pub fn parse(
+        &self,
+        settings: &[Setting],
+        tasks: Option<&[ListedTask]>,
+    ) -> Result<ValidScenario, ScenarioError> {
+        scenario_file::parse_with_tasks(&self.text, &self.name, settings, tasks)
     }
 }
 

@@ -6,6 +6,7 @@ use pleach::mission::MissionError;
 use pleach::page::PageError;
 use pleach::scenario_file::ScenarioError;
 use pleach::starts::NoStarts;
+use pleach::task_list::TaskListError;
 use serde::{Serialize, Serializer};
 use std::io;
 use std::path::PathBuf;
@@ -100,6 +101,9 @@ pub enum Failure {
     /// Arguments that contradict each other.
     #[error("{0}")]
     Usage(String),
+    /// Tasks cannot be read from a table.
+    #[error(transparent)]
+    Tasks(#[from] TaskListError),
     /// Robots cannot be placed at random.
     #[error(transparent)]
     Starts(#[from] NoStarts),
@@ -172,6 +176,7 @@ impl Failure {
             | Failure::TooManyRuns { .. }
             | Failure::Usage(_)
             | Failure::Without { .. }
+            | Failure::Tasks(_)
             | Failure::Starts(_)
             | Failure::Import(_)
             | Failure::Skeleton(_)

@@ -293,6 +293,15 @@ impl MissionPage {
             .collect();
         rows.push(Row::new("recruits elected", self.summary.recruits().to_string()));
         rows.push(Row::new("stationary points", self.summary.stationary_points().to_string()));
+        let links = self.summary.links();
+        let told = summary::links_told(links);
+        rows.push(match links.most() {
+            Some((_, instant)) => Row::at("links through walls", told, instant.step),
+            None => Row::new("links through walls", told),
+        });
+        if links.are_worth_a_warning() {
+            rows.push(Row::new("warning", summary::LINKS_WARNING.to_owned()));
+        }
         let measured = summary::measured(self.judge.extremes(), &self.settings);
         rows.extend(measured.into_iter().map(|Measured { name, value, step, robots, bound }| {
             Row::at(name, format!("{value} ({robots}); {bound}"), step)

@@ -7,6 +7,7 @@
 
 mod acts;
 pub mod arguments;
+pub mod arrangements;
 mod drawn;
 pub mod floor_plans;
 pub mod in_storms;
@@ -15,6 +16,7 @@ mod mission;
 pub mod oracle;
 mod scenarios;
 pub mod strategies;
+pub mod verdicts;
 
 pub use acts::{Acts, counted};
 pub use drawn::{Drawn, redundant, used};

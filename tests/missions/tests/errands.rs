@@ -83,7 +83,7 @@ fn a_user_is_told_what_became_of_each_task() {
         mission.end.reason,
         "of 4 tasks 0 are serviced, and 4 have ended or been taken back"
     );
-    let mut summary = Summary::new(&mission.scenario);
+    let mut summary = Summary::new(&valid(mission.scenario.clone()));
     for Period { snapshot, events } in &mission.periods {
         summary.observe(snapshot, events).unwrap();
     }

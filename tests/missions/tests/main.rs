@@ -20,3 +20,4 @@ mod shipped;
 mod storms;
 mod strategies;
 mod stressed;
+mod verdicts;

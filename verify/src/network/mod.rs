@@ -107,7 +107,7 @@ mod tests;
 mod violation;
 
 pub use bound::Spans;
-pub use extremes::{Extreme, Extremes};
+pub use extremes::{Extreme, Extremes, TreeLinks};
 pub use judge::{Judge, JudgeOfFleets, Referee, Safety, judged_faults};
 pub use limits::{Limits, SLACK};
 pub use monitor::{Monitor, RoleTable, audit};

@@ -2,10 +2,11 @@
 
 use nalgebra::point;
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
+use pleach_automaton::network::scenario::LinkCount;
 use pleach_discrete::network::{Phase, Role};
 
 use super::sample::{role_table, route, scenario, snapshot, stated, valid};
-use super::{Extremes, Monitor, Property, Violation, audit};
+use super::{Extremes, Instant, Monitor, Property, TreeLinks, Violation, audit};
 
 fn monitor() -> Monitor<'static> {
     Monitor::new(&scenario(), role_table)
@@ -53,6 +54,27 @@ fn a_sound_mission_passes_and_its_extremes_are_told() {
     assert_eq!((load.value, load.robots), (0.3, vec![0]));
     let busier = keeps(|before, _| before.routes[0].share = 0.3 + 1e-7);
     assert_eq!(busier.load.unwrap().value, 0.3 + 1e-7);
+}
+
+/// A pillar stands between robots 0 and 1, and robot 1 leaves its shadow in the end.
+#[test]
+fn links_of_the_tree_that_cross_walls_are_counted() {
+    let mut stated = stated();
+    stated.workspace.holes = vec![vec![[0.43, -0.03], [0.47, -0.03], [0.47, 0.03], [0.43, 0.03]]];
+    let scenario = valid(stated);
+    let [opening, before, mut after] = [0, 1, 2].map(snapshot);
+    let mut links = TreeLinks::default();
+    assert!(!links.are_worth_a_warning());
+    links.observe(&opening, scenario.site());
+    assert_eq!(links.last(), LinkCount { links: 4, through_walls: 1 });
+    links.observe(&before, scenario.site());
+    after.positions[1] = point![0.5, 0.3];
+    after.tree.pop();
+    links.observe(&after, scenario.site());
+    assert_eq!(links.last(), LinkCount { links: 3, through_walls: 0 });
+    let most = LinkCount { links: 4, through_walls: 1 };
+    assert_eq!(links.most(), Some((most, Instant { step: 0, time: 0.0 })));
+    assert!(links.are_worth_a_warning());
 }
 
 #[test]

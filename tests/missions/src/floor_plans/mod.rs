@@ -5,12 +5,16 @@
 
 mod brief;
 mod dice;
+mod edge_settings;
 mod families;
 mod outline;
 mod places;
+mod small_rooms;
 
 pub use dice::Dice;
+pub use edge_settings::edge_settings;
 pub use families::Family;
+pub use small_rooms::small_room;
 
 use pleach::automaton::network::scenario::ValidScenario;
 
