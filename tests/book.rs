@@ -82,7 +82,7 @@ fn every_document_has_a_line_in_the_contents() {
 }
 
 /// Examples that are no classics: they are about the robots.
-const OTHERS: [&str; 5] = ["explore", "fuzz", "outcomes", "storm", "stress"];
+const OTHERS: [&str; 6] = ["explore", "fuzz", "outcomes", "storm", "stress", "verdicts"];
 
 #[test]
 fn every_example_has_a_page_and_every_page_a_line_in_the_contents() {

@@ -4,7 +4,7 @@ use missions::{Arrival, Filtered, Mission, run, run_over, shipped, shipped_missi
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
     AccessPoint, Agenda, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task,
-    WorkspaceOutline,
+    Unreachable, WorkspaceOutline,
 };
 use pleach::continuous::Point;
 use std::path::Path;
@@ -93,10 +93,24 @@ fn a_task_in_another_component_is_unreachable() {
     assert_unserviced(&shipped_mission("unreachable").0, Outcome::UnreachableTask, 1);
 }
 
-/// What was serviced before stays serviced, and what comes after an impossible task is not tried.
+/// What was serviced before stays serviced, and what comes after an impossible task is serviced, too.
 #[test]
-fn an_impossible_task_ends_the_mission() {
+fn an_impossible_task_is_skipped() {
     let mut scenario = room([1.5, 0.5]);
+    scenario.task.extend([[1.1, 0.5], [1.5, 0.2]].map(Task::at));
+    let mission = run(scenario);
+    let end = &mission.end;
+    assert_eq!((end.outcome, &end.tasks[..]), (Outcome::UnreachableTask, &[1][..]));
+    assert!(end.reason.contains("the service radius of task 1"), "{}", end.reason);
+    let serviced: Vec<usize> = mission.last().serviced.iter().map(|&(task, _)| task).collect();
+    assert_eq!(serviced, [0, 2]);
+}
+
+/// Nor is it tried where the scenario says so.
+#[test]
+fn an_impossible_task_ends_the_mission_that_says_so() {
+    let mut scenario = room([1.5, 0.5]);
+    scenario.mission.unreachable = Some(Unreachable::End);
     scenario.task.extend([[1.1, 0.5], [1.5, 0.2]].map(Task::at));
     let mission = run(scenario);
     assert_unserviced(&mission, Outcome::UnreachableTask, 1);
@@ -190,7 +204,7 @@ fn the_program_tells_outcomes_by_its_exit_status() {
     let expected = [
         (Path::new("scenarios/redundant-node.toml"), 0, "serviced"),
         (Path::new("tests/scenarios/faulty/empty.toml"), 2, ""),
-        (Path::new("scenarios/too-few.toml"), 3, "insufficient robots: task 1"),
+        (Path::new("scenarios/too-few.toml"), 3, "insufficient robots: of 3 tasks 1 are serviced; no robot could service tasks 1 and 2"),
         (Path::new("scenarios/unreachable.toml"), 3, "unreachable task: "),
         (&hasty, 3, "step limit: "),
         // Five robots of rate 0.27: one relay cannot carry the traffic of all.

@@ -269,12 +269,12 @@ fn each_cluster_leads_to_the_task_near_it() {
 
 #[test]
 fn an_end_without_service_says_why() {
-    let reason = &mission("too-few").end.reason;
-    assert!(reason.contains("task 1") && reason.contains("more robots are needed"), "{reason}");
-    let reason = &mission("unreachable").end.reason;
-    assert!(reason.contains("task 1"), "{reason}");
-    assert_eq!(mission("too-few").end.task, Some(1));
-    assert_eq!(mission("unreachable").end.task, Some(1));
+    let end = &mission("too-few").end;
+    assert!(end.reason.contains("no robot could service tasks 1 and 2"), "{}", end.reason);
+    assert_eq!((end.task, &end.tasks[..]), (None, &[1, 2][..]));
+    let end = &mission("unreachable").end;
+    assert!(end.reason.contains("within the service radius of task 1"), "{}", end.reason);
+    assert_eq!((end.task, &end.tasks[..]), (Some(1), &[1][..]));
 }
 
 // ---- What an oracle finds in spoiled traces ---------------------------------------------------

@@ -125,6 +125,12 @@ pub fn every_event() -> Vec<MissionEvent> {
         MissionEvent::TaskReannounced { task: 0, gone: vec![], joined: vec![1] },
         MissionEvent::TaskEnded { task: 0 },
         MissionEvent::TaskWithdrawn { task: 1 },
+        MissionEvent::TaskGivenUp {
+            task: 1,
+            outcome: Outcome::Blocked,
+            reason: "robot 3 is in the way".to_owned(),
+            certificate: None,
+        },
     ];
     events.extend(
         (Role::ALL.into_iter().zip(Role::ALL.into_iter().skip(1)))

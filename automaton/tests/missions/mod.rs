@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use pleach_automaton::network::Network;
-use pleach_automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
+use pleach_automaton::network::record::{End, Faults, MissionEvent, Outcome};
 use pleach_automaton::network::scenario::{Scenario, ValidScenario};
 use pleach_automaton::{Executor, HybridTime, Observer, Reason};
 use pleach_discrete::network::activity::may_follow;

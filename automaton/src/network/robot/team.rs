@@ -230,7 +230,7 @@ impl Robot {
             return;
         }
         let own_slack = (self.is_slack() || self.is_near_enough()).then_some(self.id);
-        let own_saturated = self.is_saturated().then_some(self.id);
+        let own_saturated = (self.is_saturated() && !self.is_at_limit()).then_some(self.id);
         let still = self.still_periods;
         let near_other_tree = self.is_eager() && self.is_near_other_tree();
         self.team = match self.duty.post().map(|post| post.kind) {
@@ -286,15 +286,17 @@ impl Robot {
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.
     fn is_slack(&self) -> bool {
-        let bound = self
-            .anchor()
-            .and_then(|anchor| self.neighbour_at(anchor))
-            .is_none_or(|parent| self.length_ahead(parent) >= SLACK * self.build_length());
         let bunched = || {
             self.team_goal()
                 .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
         };
-        !bound && !self.is_saturated() && (self.leads() || !bunched())
+        !self.is_at_limit() && !self.is_saturated() && (self.leads() || !bunched())
+    }
+
+    /// Whether its link to its parent is as long as it may be.
+    fn is_at_limit(&self) -> bool {
+        let parent = self.anchor().and_then(|anchor| self.neighbour_at(anchor));
+        parent.is_none_or(|parent| self.length_ahead(parent) >= SLACK * self.build_length())
     }
 
     /// The length of its link to this node, or what that would be a step ahead: it may be longer at once where the

@@ -217,7 +217,7 @@ pub enum Problem {
     /// A robot that no chain of links connects to an access point.
     #[error(
         "it is cut off: no chain of robots leads from it to an access point with links of \
-         at most {longest:.6} each, measured along the shortest way around walls; place it \
+         at most {longest:.6} each that robots can walk, on a way that leads no farther from either end; place it \
          nearer to an access point or to another robot"
     )]
     CutOff { longest: f64 },

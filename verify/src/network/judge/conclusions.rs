@@ -110,7 +110,7 @@ impl Conclusions {
             // So may the mission be, until robots are free.
             MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => {
                 self.forget_early();
-                self.resume(step);
+                (self.ended, self.at_rest, self.ahead) = (None, None, None);
             }
             _ => {}
         }
