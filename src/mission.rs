@@ -348,7 +348,8 @@ impl<'a, 'w> Gallery<'a, 'w> {
 
     /// The robots that send nearly all the time, of a fleet where there are several.
     fn saturated_of(&self, fleet: Option<&Fleet>) -> Vec<(usize, f64)> {
-        let is_own = |robot: usize| fleet.is_none_or(|it| it.robots().binary_search(&robot).is_ok());
+        let is_own =
+            |robot: usize| fleet.is_none_or(|it| it.robots().binary_search(&robot).is_ok());
         self.saturated.iter().filter(|&&(robot, _)| is_own(robot)).copied().collect()
     }
 

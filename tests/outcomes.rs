@@ -3,8 +3,8 @@
 use missions::{Arrival, Filtered, Mission, run, run_over, shipped, shipped_mission};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
-    AccessPoint, Agenda, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task,
-    Unreachable, WorkspaceOutline,
+    AccessPoint, Agenda, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, Unreachable,
+    WorkspaceOutline,
 };
 use pleach::continuous::Point;
 use std::path::Path;
@@ -204,7 +204,11 @@ fn the_program_tells_outcomes_by_its_exit_status() {
     let expected = [
         (Path::new("scenarios/redundant-node.toml"), 0, "serviced"),
         (Path::new("tests/scenarios/faulty/empty.toml"), 2, ""),
-        (Path::new("scenarios/too-few.toml"), 3, "insufficient robots: of 3 tasks 1 are serviced; no robot could service tasks 1 and 2"),
+        (
+            Path::new("scenarios/too-few.toml"),
+            3,
+            "insufficient robots: of 3 tasks 1 are serviced; no robot could service tasks 1 and 2",
+        ),
         (Path::new("scenarios/unreachable.toml"), 3, "unreachable task: "),
         (&hasty, 3, "step limit: "),
         // Five robots of rate 0.27: one relay cannot carry the traffic of all.

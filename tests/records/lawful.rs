@@ -37,6 +37,8 @@ pub const REASONS: &[(&str, &str)] = &[
         "its holder has been of the primary team a few periods before, whose posts change when it is set up or dissolved",
     ),
     ("posts: one is a junction", BRANCHES),
+    ("active team: two teams at once", EARLY),
+    ("path: the primary team is on it", EARLY),
     ("posts: a junction is none", BRANCHES),
     ("subgroup started: it is told five periods later", "observers may hear of the start late"),
     (
@@ -51,6 +53,7 @@ pub const REASONS: &[(&str, &str)] = &[
 
 const BRANCHES: &str = "where branches part is compared only while no subgroup is under way and no event \
                         was so recent that news of it may be";
+const EARLY: &str = "a path Σ may be seen before it is told, while a recruit is called for that is to release the leader";
 const ITERATE: &str =
     "λ is what a robot's iteration has come to; no property speaks of it but its sign";
 const SHOWN: &str =

@@ -136,7 +136,12 @@ fn robots_that_are_too_few_stretch_their_links_and_say_so() {
 #[test]
 fn a_task_that_no_robot_can_come_near_is_named() {
     let end = decided("scenarios/unreachable").end;
-    assert_eq!((end.outcome, &end.tasks[..]), (Outcome::UnreachableTask, &[1][..]), "{}", end.reason);
+    assert_eq!(
+        (end.outcome, &end.tasks[..]),
+        (Outcome::UnreachableTask, &[1][..]),
+        "{}",
+        end.reason
+    );
 }
 
 #[test]

@@ -66,11 +66,7 @@ fn run(scenario: Scenario) -> Mission {
         _ => None,
     });
     let tasks: BTreeSet<usize> = given_up.collect();
-    let end = End {
-        certificate: referee.account(&end),
-        tasks: tasks.into_iter().collect(),
-        ..end
-    };
+    let end = End { certificate: referee.account(&end), tasks: tasks.into_iter().collect(), ..end };
     if let Some(violation) = violation.or_else(|| referee.conclude(&end).err()) {
         panic!("{}: {violation}", scenario.name);
     }

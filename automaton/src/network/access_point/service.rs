@@ -593,7 +593,12 @@ fn give_up<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects) 
     };
     effects.extend([
         ServiceEffect::GiveUp(task, outcome),
-        ServiceEffect::Report(MissionEvent::TaskGivenUp { task, outcome, reason, certificate: None }),
+        ServiceEffect::Report(MissionEvent::TaskGivenUp {
+            task,
+            outcome,
+            reason,
+            certificate: None,
+        }),
         ServiceEffect::Supersede(Notice::Withdrawn { task }),
     ]);
     Some(Done { task })

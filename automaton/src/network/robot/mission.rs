@@ -304,12 +304,7 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
             "call for a recruit",
             recruit::call,
         ))
-        .carried_out(Transfer::new(
-            Step::Unbound,
-            guards::unbound(),
-            "lead on",
-            leader::lead_on,
-        ))
+        .carried_out(Transfer::new(Step::Unbound, guards::unbound(), "lead on", leader::lead_on))
         .carried_out(Transfer::new(
             Step::Trapped,
             guards::trapped(),

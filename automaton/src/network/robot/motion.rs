@@ -260,9 +260,8 @@ impl Robot {
     /// move, by as much as the move may be off, so that it truly gets no longer.
     fn link_discs(&self, link: &TreeLink) -> impl Iterator<Item = Disc> {
         let neighbour = self.neighbour(link.to);
-        let path = neighbour.and_then(|node| {
-            self.site.free_space.geodesic(self.position, node.position())
-        });
+        let path = neighbour
+            .and_then(|node| self.site.free_space.geodesic(self.position, node.position()));
         let reached = ROUNDING * self.site.workspace.extent();
         let (limit, motion) = (link.limit, self.site.settings.errors.motion);
         path.into_iter().flat_map(|path| path.waypoints).filter_map(move |center| {

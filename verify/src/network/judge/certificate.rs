@@ -67,9 +67,7 @@ pub fn check(judge: &Judge, end: &Claim) -> Complaint {
         (Outcome::UnreachableTask, Certificate::Unreachable(claim)) => {
             is_out_of_reach(judge, claim, end.task)
         }
-        (Outcome::InsufficientRobots, Certificate::Bound(claim)) => {
-            takes_more(judge, claim)
-        }
+        (Outcome::InsufficientRobots, Certificate::Bound(claim)) => takes_more(judge, claim),
         (Outcome::InsufficientRobots | Outcome::Blocked, Certificate::Tried { attempts, team })
             if calls || judge.nobody_leads() =>
         {

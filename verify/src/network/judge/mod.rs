@@ -50,8 +50,8 @@ use super::limits::Limits;
 use super::monitor::Monitor;
 use super::property::Property;
 use super::violation::{Instant, Violation};
-pub(super) use clock::Clock;
 use certificate::Claim;
+pub(super) use clock::Clock;
 use conclusions::Conclusions;
 pub use fleets::JudgeOfFleets;
 use ground::Ground;
@@ -320,11 +320,8 @@ impl<'a> Judge<'a> {
         let MissionEvent::TaskGivenUp { task, outcome, certificate, .. } = event else {
             return Ok(());
         };
-        let claim = Claim {
-            outcome: *outcome,
-            task: Some(*task),
-            certificate: certificate.as_deref(),
-        };
+        let claim =
+            Claim { outcome: *outcome, task: Some(*task), certificate: certificate.as_deref() };
         let complaint = certificate::check(self, &claim).err();
         match complaint.or_else(|| self.refutation(*outcome)) {
             None => Ok(()),

@@ -321,9 +321,6 @@ fn what_cannot_be_promised_is_left_for_others() {
     let part = Some(GrantedPart { flow: 0.05, until: NOW + 7 });
     assert_eq!(refused, FlowGrant { number, flow: 0.1, until: NOW + 5, part });
     assert!((granted.flow - 0.2).abs() < 1e-9 && granted.until == NOW + 3, "{granted:?}");
-    robot.has_flow_news = true;
-    robot.take_in_requests(&mut outputs);
-    assert!(grants(&mut outputs).is_empty(), "nothing has changed");
 }
 
 /// A grant of a part holds when all of it has ended.
