@@ -43,17 +43,17 @@ impl Draw {
     }
 
     /// How the mission with this seed ends, and what is false about that.
-    fn examined(self, seed: u64) -> (String, Option<Falsehood>) {
+    fn examined(self, seed: u64) -> (String, Vec<Falsehood>) {
         let scenario = self.scenario(seed);
         match self {
             Draw::Rooms => {
                 let verdict = verdict(&scenario);
-                let open = if verdict.is_open { ", open" } else { "" };
-                (format!("{}{open}", verdict.end.outcome.name()), verdict.falsehood)
+                let open = if verdict.open > 0 { ", open" } else { "" };
+                (format!("{}{open}", verdict.outcome.name()), verdict.falsehoods)
             }
             Draw::Settings => {
                 let (outcome, falsehood) = violation(&scenario);
-                (outcome, falsehood)
+                (outcome, falsehood.into_iter().collect())
             }
         }
     }
@@ -62,16 +62,20 @@ impl Draw {
 fn main() -> Result<(), Box<dyn Error>> {
     let Arguments { drawn, first, count, folder } = Arguments::parse();
     let seeds = first..first.saturating_add(count);
-    let examined: Vec<(u64, (String, Option<Falsehood>))> =
+    let examined: Vec<(u64, (String, Vec<Falsehood>))> =
         seeds.into_par_iter().map(|seed| (seed, drawn.examined(seed))).collect();
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     let mut index = String::new();
-    for (seed, (outcome, falsehood)) in &examined {
+    for (seed, (outcome, falsehoods)) in &examined {
         *counts.entry(outcome.clone()).or_default() += 1;
-        let Some(falsehood) = falsehood else { continue };
-        *counts.entry(format!("false: {}", falsehood.kind)).or_default() += 1;
+        if falsehoods.is_empty() {
+            continue;
+        }
         let scenario = drawn.scenario(*seed);
-        index += &format!("\n{}: {outcome}: {falsehood}\n", scenario.name);
+        for falsehood in falsehoods {
+            *counts.entry(format!("false: {}", falsehood.kind)).or_default() += 1;
+            index += &format!("\n{}: {falsehood}\n", scenario.name);
+        }
         if let Some(folder) = &folder {
             std::fs::create_dir_all(folder)?;
             let file = folder.join(format!("{}.toml", scenario.name));

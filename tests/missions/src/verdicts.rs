@@ -1,4 +1,4 @@
-//! What missions say of tasks that they do not service, compared with a [search](Arrangements) for an arrangement.
+//! What missions say of tasks that they give up, compared with a [search](Arrangements) for an arrangement.
 
 use crate::arrangements::Arrangements;
 use pleach::automaton::network::certificate::Certificate;
@@ -9,23 +9,23 @@ use pleach::continuous::network::LinkReliability;
 use pleach::mission::{self, Watcher};
 use std::{fmt, io};
 
-/// How a mission ended, and what a search says of that.
+/// How a mission ended, and what a search says of the tasks that it gave up.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// How it ended.
-    pub end: End,
-    /// What is false about that, if anything is.
-    pub falsehood: Option<Falsehood>,
-    /// Whether the search neither confirms nor contradicts it.
-    pub is_open: bool,
+    pub outcome: Outcome,
+    /// What is false.
+    pub falsehoods: Vec<Falsehood>,
+    /// How many tasks are given up with a reason that the search neither confirms nor contradicts.
+    pub open: usize,
 }
 
-/// Why a verdict is false.
+/// What a mission says that is not so.
 #[derive(Clone, Debug)]
 pub struct Falsehood {
-    /// What kind of verdict it is.
+    /// What kind of falsehood it is.
     pub kind: String,
-    /// What contradicts it, as a sentence.
+    /// What contradicts it.
     pub contradiction: String,
 }
 
@@ -35,23 +35,25 @@ impl fmt::Display for Falsehood {
     }
 }
 
-/// Runs the mission of a scenario, and compares what it says at its end.
+/// Runs the mission of a scenario, and compares what it says of each task that it gives up.
 pub fn verdict(scenario: &ValidScenario) -> Verdict {
-    let mut last = Last::default();
-    let end = mission::run(scenario, &mut [&mut last]).expect("a mission without errors").end;
-    let opinion = compared(scenario, &end);
-    let falsehood = match &opinion {
-        Opinion::Contradicted(falsehood) => {
-            let Falsehood { kind, contradiction } = falsehood;
-            let contradiction = format!("{contradiction}\n  at the end {}", last.standing());
-            Some(Falsehood {
-                kind: format!("{kind}; {}", last.cause(scenario, &end)),
-                contradiction,
-            })
+    let mut account = Account::new(scenario);
+    let end = mission::run(scenario, &mut [&mut account]).expect("a mission without errors").end;
+    let search = Arrangements::of(scenario);
+    let mut verdict = Verdict { outcome: end.outcome, falsehoods: Vec::new(), open: 0 };
+    for (claim, state) in &account.claims {
+        match compared(scenario, &search, claim) {
+            Opinion::Confirmed => {}
+            Opinion::Open => verdict.open += 1,
+            Opinion::Contradicted(Falsehood { kind, contradiction }) => {
+                let kind = format!("{kind}; {}", state.cause);
+                let contradiction = format!("{contradiction}\n  then {}", state.standing);
+                verdict.falsehoods.push(Falsehood { kind, contradiction });
+            }
         }
-        _ => None,
-    };
-    Verdict { end, falsehood, is_open: matches!(opinion, Opinion::Open) }
+    }
+    verdict.falsehoods.extend(false_end(scenario, &search, &end, &account.serviced));
+    verdict
 }
 
 /// Runs the mission of a scenario: its outcome, and the violation with which it ends, if it does.
@@ -69,10 +71,42 @@ pub fn violation(scenario: &ValidScenario) -> (String, Option<Falsehood>) {
     (outcome.to_owned(), found.map(falsehood))
 }
 
-/// What a search says of the end of a mission.
+/// What is false about the end itself: the mission does not come to one, or services what the search says it cannot.
+fn false_end(
+    scenario: &ValidScenario,
+    search: &Arrangements,
+    end: &End,
+    serviced: &[usize],
+) -> Option<Falsehood> {
+    if matches!(end.outcome, Outcome::InvariantViolated | Outcome::StepLimit) {
+        let kind = end.outcome.name().to_owned();
+        return Some(Falsehood { kind, contradiction: end.reason.clone() });
+    }
+    let (least, robots) = (search.least(serviced), scenario.robot.len());
+    let contradiction = format!("{robots} robots service tasks {serviced:?}, which take {least:?}");
+    let is_wrong = least.is_none_or(|least| least > robots);
+    is_wrong.then(|| Falsehood { kind: "the search is wrong".to_owned(), contradiction })
+}
+
+/// Why a task is given up.
+#[derive(Clone, Debug)]
+pub struct Claim {
+    /// The task.
+    pub task: usize,
+    /// The tasks that are serviced at the same time.
+    pub serviced: Vec<usize>,
+    /// What it ends like.
+    pub outcome: Outcome,
+    /// The reason, as a sentence.
+    pub reason: String,
+    /// What observers add to show it.
+    pub certificate: Option<Certificate>,
+}
+
+/// What a search says of a claim.
 #[derive(Clone, Debug)]
 pub enum Opinion {
-    /// It had to be so.
+    /// It is true.
     Confirmed,
     /// The grid is too coarse to say.
     Open,
@@ -81,57 +115,39 @@ pub enum Opinion {
 }
 
 impl Opinion {
-    fn contradicted(kind: impl Into<String>, contradiction: String) -> Self {
-        Opinion::Contradicted(Falsehood { kind: kind.into(), contradiction })
-    }
-
     fn open_if(is_open: bool) -> Self {
         if is_open { Opinion::Open } else { Opinion::Confirmed }
     }
 }
 
-/// What a search says of the end of a mission of this scenario.
-pub fn compared(scenario: &ValidScenario, end: &End) -> Opinion {
-    let (search, robots) = (Arrangements::of(scenario), scenario.robot.len());
-    let task = end.task.unwrap_or_default();
-    match end.outcome {
-        Outcome::Serviced => {
-            let all: Vec<usize> = (0..scenario.task.len()).collect();
-            match search.least(&all) {
-                Some(least) if least <= robots => Opinion::Confirmed,
-                least => {
-                    let told = format!("{robots} robots service what takes {least:?}");
-                    Opinion::contradicted("the search is wrong", told)
-                }
-            }
-        }
-        Outcome::UnreachableTask if search.is_in_reach(task) => Opinion::contradicted(
-            "unreachable",
-            format!("a robot can come within δ of task {task}"),
-        ),
-        Outcome::UnreachableTask => Opinion::open_if(!search.is_out_of_reach(task)),
-        Outcome::InsufficientRobots | Outcome::Blocked => {
-            let tasks: Vec<usize> = (0..=task).collect();
-            let (certificate, most) = match &end.certificate {
-                Some(Certificate::Bound(bound)) => ("bound", bound.least - 1),
-                certificate => {
-                    let name = certificate.as_ref().map_or("no certificate", Certificate::name);
-                    (name, search.team())
-                }
-            };
-            match arrangement(scenario, &search, &tasks, most) {
-                Some(found) => {
-                    let kind = format!("{}, {certificate}, {}", end.outcome.name(), found.links());
-                    Opinion::contradicted(kind, format!("{}\n  but {found}", end.reason))
-                }
-                None => Opinion::open_if(search.least(&tasks).is_some_and(|least| least <= most)),
-            }
-        }
-        _ => Opinion::contradicted("the end", end.reason.clone()),
+/// What a search says of a claim about a task of this scenario.
+pub fn compared(scenario: &ValidScenario, search: &Arrangements, claim: &Claim) -> Opinion {
+    let Claim { task, serviced, outcome, reason, certificate } = claim;
+    if *outcome == Outcome::UnreachableTask {
+        return match search.is_in_reach(*task) {
+            true => Opinion::Contradicted(Falsehood {
+                kind: outcome.name().to_owned(),
+                contradiction: format!("a robot can come within δ of task {task}: {reason}"),
+            }),
+            false => Opinion::open_if(!search.is_out_of_reach(*task)),
+        };
     }
+    let tasks: Vec<usize> = serviced.iter().chain([task]).copied().collect();
+    let most = match certificate {
+        Some(Certificate::Bound(bound)) => bound.least - 1,
+        _ => search.team(),
+    };
+    let Some(found) = Found::new(scenario, search, &tasks, most) else {
+        return Opinion::open_if(search.least(&tasks).is_some_and(|least| least <= most));
+    };
+    let proof = certificate.as_ref().map_or("no certificate", Certificate::name);
+    Opinion::Contradicted(Falsehood {
+        kind: format!("{}, {proof}; {}", outcome.name(), found.links()),
+        contradiction: format!("task {task}: {reason}\n  but {found}"),
+    })
 }
 
-/// An arrangement that contradicts a verdict.
+/// An arrangement that contradicts a claim.
 struct Found<'s> {
     scenario: &'s ValidScenario,
     /// How long its links may be.
@@ -139,27 +155,27 @@ struct Found<'s> {
     places: Vec<Point>,
 }
 
-/// An arrangement with fully reliable links, or else with links each of which carries the rates of all robots.
-fn arrangement<'s>(
-    scenario: &'s ValidScenario,
-    search: &Arrangements,
-    tasks: &[usize],
-    most: usize,
-) -> Option<Found<'s>> {
-    let site = scenario.site();
-    let rates: f64 = scenario.robot.iter().map(|robot| robot.rate).sum();
-    let carrying = site.radio.distance_at(rates.max(site.settings.tree_reliability));
-    [site.settings.link.full_range, carrying].into_iter().find_map(|reach| {
-        let places = search.found(tasks, reach, most)?;
-        Some(Found { scenario, reach, places })
-    })
-}
+impl<'s> Found<'s> {
+    /// One with fully reliable links, or else with links each of which carries the rates of all robots.
+    fn new(
+        scenario: &'s ValidScenario,
+        search: &Arrangements,
+        tasks: &[usize],
+        most: usize,
+    ) -> Option<Self> {
+        let site = scenario.site();
+        let rates: f64 = scenario.robot.iter().map(|robot| robot.rate).sum();
+        let carrying = site.radio.distance_at(rates.max(site.settings.tree_reliability));
+        [site.settings.link.full_range, carrying].into_iter().find_map(|reach| {
+            let places = search.found(tasks, reach, most)?;
+            Some(Found { scenario, reach, places })
+        })
+    }
 
-impl Found<'_> {
     fn links(&self) -> &'static str {
         match self.reach <= self.scenario.link.full_range {
-            true => "with links that are fully reliable",
-            false => "with longer links",
+            true => "reliable links suffice",
+            false => "longer links suffice",
         }
     }
 
@@ -193,14 +209,17 @@ fn listed(places: &[Point]) -> String {
     places.iter().map(|place| format!(" ({:.3}, {:.3})", place.x, place.y)).collect()
 }
 
-/// The last that a mission showed, and what its last leader was bound to when it was elected.
-#[derive(Default)]
-struct Last {
-    snapshot: Option<Snapshot>,
+/// What a mission claims, each with the state in which it does.
+struct Account<'s> {
+    scenario: &'s ValidScenario,
+    /// What binds the robot that was elected last.
     leader: Option<Bonds>,
+    claims: Vec<(Claim, State)>,
+    /// The tasks that are serviced now.
+    serviced: Vec<usize>,
 }
 
-/// What binds a robot to its place.
+/// What binds a robot to its place when it is elected.
 #[derive(Clone, Copy, Debug)]
 enum Bonds {
     None,
@@ -208,47 +227,65 @@ enum Bonds {
     Duties,
 }
 
-impl Watcher for Last {
-    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
-        for event in events {
-            if let MissionEvent::LeaderElected { robot, conflict, .. } = *event {
-                let has_child = snapshot.tree.iter().any(|&(_, parent)| parent == robot);
-                let has_task = snapshot.serviced.iter().any(|&(_, holder)| holder == robot);
-                self.leader = Some(match (conflict, has_child || has_task) {
-                    (false, _) => Bonds::None,
-                    (true, false) => Bonds::UnusedPost,
-                    (true, true) => Bonds::Duties,
-                });
+/// What a state has to do with a claim, as far as that is seen from outside.
+struct State {
+    cause: &'static str,
+    /// Where robots stand, and as what.
+    standing: String,
+}
+
+impl<'s> Account<'s> {
+    fn new(scenario: &'s ValidScenario) -> Self {
+        Account { scenario, leader: None, claims: Vec::new(), serviced: Vec::new() }
+    }
+
+    fn state(&self, task: usize, snapshot: &Snapshot) -> State {
+        let delta = self.scenario.site().settings.service_radius;
+        let place = Point::from(self.scenario.task[task].position);
+        let cause = match self.leader {
+            _ if snapshot.positions.iter().any(|robot| (robot - place).norm() <= delta) => {
+                "a robot is within δ of the task"
             }
-        }
-        self.snapshot = Some(snapshot.clone());
-        Ok(())
+            None => "nobody was elected",
+            Some(Bonds::None) => "the leader was free",
+            Some(Bonds::UnusedPost) => "the leader was bound to a post that nothing depends on",
+            Some(Bonds::Duties) => "the leader was bound to its duties",
+        };
+        let robots = snapshot.roles.iter().zip(&snapshot.positions);
+        let told = robots.map(|(role, place)| format!("{} at{}", role.name(), listed(&[*place])));
+        let standing = format!("k = {}: {}", snapshot.step, told.collect::<Vec<_>>().join(", "));
+        State { cause, standing }
     }
 }
 
-impl Last {
-    /// What the last state has to do with the end, as far as that is seen from outside.
-    fn cause(&self, scenario: &ValidScenario, end: &End) -> &'static str {
-        let delta = scenario.site().settings.service_radius;
-        let places = self.snapshot.as_ref().map_or(&[][..], |last| &last.positions);
-        let is_within = |task: usize| {
-            let task = Point::from(scenario.task[task].position);
-            places.iter().any(|place| (place - task).norm() <= delta)
-        };
-        match self.leader {
-            _ if end.task.is_some_and(is_within) => "a robot is within δ of the task",
-            None => "nobody leads",
-            Some(Bonds::None) => "the leader is free",
-            Some(Bonds::UnusedPost) => "the leader is bound to a post that nothing depends on",
-            Some(Bonds::Duties) => "the leader is bound to its duties",
+impl Watcher for Account<'_> {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        self.serviced = snapshot.serviced.iter().map(|&(task, _)| task).collect();
+        for event in events {
+            match event {
+                &MissionEvent::LeaderElected { robot, conflict, .. } => {
+                    let has_child = snapshot.tree.iter().any(|&(_, parent)| parent == robot);
+                    let has_task = snapshot.serviced.iter().any(|&(_, holder)| holder == robot);
+                    self.leader = Some(match (conflict, has_child || has_task) {
+                        (false, _) => Bonds::None,
+                        (true, false) => Bonds::UnusedPost,
+                        (true, true) => Bonds::Duties,
+                    });
+                }
+                MissionEvent::TaskAnnounced { .. } => self.leader = None,
+                MissionEvent::TaskGivenUp { task, outcome, reason, certificate } => {
+                    let claim = Claim {
+                        task: *task,
+                        serviced: self.serviced.clone(),
+                        outcome: *outcome,
+                        reason: reason.clone(),
+                        certificate: certificate.as_deref().cloned(),
+                    };
+                    self.claims.push((claim, self.state(*task, snapshot)));
+                }
+                _ => {}
+            }
         }
-    }
-
-    /// Where robots stand, and as what.
-    fn standing(&self) -> String {
-        let Some(last) = &self.snapshot else { return "nothing was seen".to_owned() };
-        let robots = last.roles.iter().zip(&last.positions);
-        let told = robots.map(|(role, place)| format!("{} at{}", role.name(), listed(&[*place])));
-        format!("k = {}: {}", last.step, told.collect::<Vec<_>>().join(", "))
+        Ok(())
     }
 }

@@ -7,9 +7,9 @@
 use missions::arrangements::Arrangements;
 use missions::floor_plans::{edge_settings, small_room};
 use missions::valid;
-use missions::verdicts::{Opinion, compared, verdict, violation};
+use missions::verdicts::{Claim, Opinion, compared, verdict, violation};
 use pleach::automaton::network::certificate::{Bound, Certificate};
-use pleach::automaton::network::record::{End, Outcome};
+use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::{Scenario, ValidScenario};
 use rayon::prelude::*;
 use serde_json::json;
@@ -44,7 +44,8 @@ fn mended(known: &[(&str, &[u64])], falsehood: impl Fn(u64) -> Option<String> + 
 }
 
 fn false_verdict(seed: u64) -> Option<String> {
-    verdict(&small_room(seed)).falsehood.map(|falsehood| falsehood.to_string())
+    let falsehoods = verdict(&small_room(seed)).falsehoods;
+    falsehoods.first().map(|falsehood| falsehood.to_string())
 }
 
 fn violated(seed: u64) -> Option<String> {
@@ -146,11 +147,14 @@ fn a_bound_that_is_one_too_high_is_found() {
         let contradicts = |least: usize| {
             let bound =
                 Bound { length: 0.0, longest_link: 0.0, least, robots: scenario.robot.len() };
-            let end = End {
+            let claim = Claim {
+                task: tasks[0],
+                serviced: tasks[1..].to_vec(),
+                outcome: Outcome::InsufficientRobots,
+                reason: String::new(),
                 certificate: Some(Certificate::Bound(bound)),
-                ..End::new(Outcome::InsufficientRobots, String::new(), tasks.last().copied())
             };
-            matches!(compared(&scenario, &end), Opinion::Contradicted(_))
+            matches!(compared(&scenario, &search, &claim), Opinion::Contradicted(_))
         };
         assert!(contradicts(places.len() + 1), "seed {seed}");
         assert!(!contradicts(least), "seed {seed}");
