@@ -22,7 +22,16 @@ const ROOMS: [RangeInclusive<u64>; 2] = [1..=60, 1..=500];
 const SETTINGS: [RangeInclusive<u64>; 2] = [1..=40, 1..=500];
 
 /// Small rooms of whose missions the verdicts are false, by cause.
-const FALSE_VERDICTS: &[(&str, &[u64])] = &[];
+const FALSE_VERDICTS: &[(&str, &[u64])] = &[
+    (
+        "the leader holds a post on which others depend, and posts stay where they are",
+        &[
+            7, 14, 19, 30, 39, 49, 111, 129, 142, 158, 160, 169, 179, 198, 218, 264, 303, 318, 327,
+            345, 360, 363, 371, 394, 405, 413, 425, 470,
+        ],
+    ),
+    ("posts of an earlier task stay where they are, and a link more is needed", &[132, 359]),
+];
 /// Missions with settings at the ends of their ranges that violate an invariant, by cause.
 const VIOLATIONS: &[(&str, &[u64])] = &[];
 
