@@ -8,7 +8,63 @@
 //! [`Executor`](automaton::Executor) runs them through hybrid time; [`diagram`](automaton::diagram)
 //! draws them, and [temporal formulas](verify::temporal) judge their trajectories.
 //!
-//! # A model
+//! # A control loop
+//!
+//! A room with a load that follows a table, heated by a PI controller that is sampled every 10 ms,
+//! saturates and unwinds its integral; its output takes effect 25 ms later:
+//!
+//! ```
+//! use pleach::prelude::*;
+//!
+//! vocabulary! {
+//!     enum Place: Location { Running = "running" }
+//!     enum Clock: Event { Sample = "sample" }
+//! }
+//! coordinates! {
+//!     struct Room { temperature = "T", heating = "u", time = "t" }
+//!     struct Controller { measured = "T", integral = "I", output = "u" }
+//! }
+//! use {Clock::Sample, Place::Running};
+//!
+//! let Room { temperature, heating, time } = Room::coordinates();
+//! let load = Table::steps([(0.0, 0.0), (5.0, -2.0), (10.0, 0.0)])?.at(&time);
+//! let room = Automaton::<_, Clock, _>::starting_in(Running)
+//!     .initially(Room { temperature: 0.0, heating: 0.0, time: 0.0 })
+//!     .flow(Running, [temperature.rate((&heating + load - &temperature) / 0.5), time.rate(1)])
+//!     .build()?;
+//!
+//! let Controller { measured, integral, output } = Controller::coordinates();
+//! let error = 3.0 - &measured;
+//! let wanted = 4.0 * &error + &integral;
+//! let possible = wanted.max(0.0).min(10.0);
+//! let unwound = 0.01 * (6.0 * error + 2.0 * (&possible - &wanted));
+//! let controller = Automaton::starting_in(Running)
+//!     .initially(Controller { measured: 0.0, integral: 0.0, output: 0.0 })
+//!     .transition(
+//!         from(Running).on(Sample).to(Running).may(always())
+//!             .then([output.becomes(possible), integral.becomes(&integral + unwound)]),
+//!     )
+//!     .build()?;
+//!
+//! let delayed = Channel::holding_last("pi.sample").held("pi.u", "room.u", 0.0);
+//! let heated = Composition::builder()
+//!     .add("room", &room)
+//!     .add("pi", &controller)
+//!     .connect("room.T", "pi.T")
+//!     .every("pi.sample", 0.01)
+//!     .channel(delayed.taking(0.025, 0.025).holding(3))
+//!     .build()?;
+//! let run = heated.run(15.0)?;
+//! let end = run.value("room.T", 15.0).ok_or("the run ended early")?;
+//! assert!((end - 3.0).abs() < 0.05);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Where the load jumps, steps of the integration end exactly. `heated.stream(…)` shows a run to
+//! [observers](automaton::composition::stream) as it happens, such as one that writes CSV, in
+//! memory that does not grow.
+//!
+//! # Locations
 //!
 //! A thermostat that keeps a room between 18 and 22 degrees:
 //!

@@ -38,7 +38,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`run`] runs the mission to its end. [`Watcher`](Watcher)s see every control
+//! [`run`] runs the mission to its end. [`Watcher`]s see every control
 //! period; the [`Summary`](crate::summary::Summary) that the program prints is one of them.
 //!
 //! ```
