@@ -88,7 +88,7 @@ fn slow_sliding_is_recognised_and_hysteresis_is_none() {
             let Reason::Sliding(sliding) = reason(rates, start, 0.0) else {
                 panic!("{rates:?}: {:?}", reason(rates, start, 0.0))
             };
-            let share = rates[0] / (rates[0] + rates[1]);
+            let share = rates[sliding.locations[0]] / (rates[0] + rates[1]);
             assert!((sliding.share - share).abs() < 1e-9, "{}", sliding.share);
         }
     }

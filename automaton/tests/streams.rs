@@ -55,11 +55,11 @@ fn model(period: f64) -> Composition {
 fn what_is_streamed_is_what_is_recorded() {
     let model = model(0.3);
     let recorded = model.run(5.0).expect("it runs");
-    let mut samples = Samples::every(0.25);
+    let mut samples = Samples::every(0.2501);
     let finish = model.stream(Settings::default(), 5.0, &mut samples).expect("it runs");
     assert_eq!(finish.ending, *recorded.ending());
     assert_eq!(Some(finish.values), recorded.values_at(5.0));
-    assert_eq!(samples.rows().len(), 21);
+    assert_eq!(samples.rows().len(), 20);
     for (t, values) in samples.rows() {
         let exact = recorded.values_at(*t).expect("it lasts");
         let is_near = |(one, other): (&f64, &f64)| (one - other).abs() < 1e-12;
