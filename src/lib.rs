@@ -8,7 +8,63 @@
 //! [`Executor`](automaton::Executor) runs them through hybrid time; [`diagram`](automaton::diagram)
 //! draws them, and [temporal formulas](verify::temporal) judge their trajectories.
 //!
-//! # A model
+//! # A control loop
+//!
+//! A room with a load that follows a table, heated by a PI controller that is sampled every 10 ms,
+//! saturates and unwinds its integral; its output takes effect 25 ms later:
+//!
+//! ```
+//! use pleach::prelude::*;
+//!
+//! vocabulary! {
+//!     enum Place: Location { Running = "running" }
+//!     enum Clock: Event { Sample = "sample" }
+//! }
+//! coordinates! {
+//!     struct Room { temperature = "T", heating = "u", time = "t" }
+//!     struct Controller { measured = "T", integral = "I", output = "u" }
+//! }
+//! use {Clock::Sample, Place::Running};
+//!
+//! let Room { temperature, heating, time } = Room::coordinates();
+//! let load = Table::steps([(0.0, 0.0), (5.0, -2.0), (10.0, 0.0)])?.at(&time);
+//! let room = Automaton::<_, Clock, _>::starting_in(Running)
+//!     .initially(Room { temperature: 0.0, heating: 0.0, time: 0.0 })
+//!     .flow(Running, [temperature.rate((&heating + load - &temperature) / 0.5), time.rate(1)])
+//!     .build()?;
+//!
+//! let Controller { measured, integral, output } = Controller::coordinates();
+//! let error = 3.0 - &measured;
+//! let wanted = 4.0 * &error + &integral;
+//! let possible = wanted.max(0.0).min(10.0);
+//! let unwound = 0.01 * (6.0 * error + 2.0 * (&possible - &wanted));
+//! let controller = Automaton::starting_in(Running)
+//!     .initially(Controller { measured: 0.0, integral: 0.0, output: 0.0 })
+//!     .transition(
+//!         from(Running).on(Sample).to(Running).may(always())
+//!             .then([output.becomes(possible), integral.becomes(&integral + unwound)]),
+//!     )
+//!     .build()?;
+//!
+//! let delayed = Channel::holding_last("pi.sample").held("pi.u", "room.u", 0.0);
+//! let heated = Composition::builder()
+//!     .add("room", &room)
+//!     .add("pi", &controller)
+//!     .connect("room.T", "pi.T")
+//!     .every("pi.sample", 0.01)
+//!     .channel(delayed.taking(0.025, 0.025).holding(3))
+//!     .build()?;
+//! let run = heated.run(15.0)?;
+//! let end = run.value("room.T", 15.0).ok_or("the run ended early")?;
+//! assert!((end - 3.0).abs() < 0.05);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Where the load jumps, steps of the integration end exactly. `heated.stream(…)` shows a run to
+//! [observers](automaton::composition::stream) as it happens, such as one that writes CSV, in
+//! memory that does not grow.
+//!
+//! # Locations
 //!
 //! A thermostat that keeps a room between 18 and 22 degrees:
 //!
@@ -47,116 +103,28 @@
 //!
 //! The examples of the repository are the classics of the field: bouncing ball, thermostat, two
 //! tanks, a clock network, a platoon and others, each tested against a closed form or a published
-//! answer. The rest of this page runs the model that comes with the framework, the robot network of
-//! *Global Planning for Multi-Robot Communication Networks in Complex Environments*: robots that
-//! grow trees of relays from access points to tasks. Each robot is an automaton that decides from
-//! its own state and from the messages that it hears.
+//! answer.
 //!
-//! # A mission
+//! # The robot network
 //!
-//! A [`Scenario`](automaton::network::scenario::Scenario) is plain data. A
-//! [`ValidScenario`](automaton::network::scenario::ValidScenario) is one from which a mission can
-//! start: read from a file by [`scenario_file::read`], or built as here. This is a room of 1.2 by 0.6
-//! with an access point at the left and a task at the right, farther away than one link reaches.
-//!
-//! ```
-//! use pleach::automaton::network::scenario::{
-//!     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
-//!     WorkspaceOutline,
-//! };
-//!
-//! let robot = |x, y| RobotStart::at([x, y], 0.075);
-//! let scenario = ValidScenario::new(Scenario {
-//!     name: "room".into(),
-//!     description: None,
-//!     workspace: WorkspaceOutline {
-//!         boundary: vec![[0.0, 0.0], [1.2, 0.0], [1.2, 0.6], [0.0, 0.6]],
-//!         holes: vec![],
-//!     },
-//!     link: LinkRanges::new(0.4, 0.5),
-//!     control: Control::default(),
-//!     mission: Agenda::default(),
-//!     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
-//!     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
-//!     task: vec![Task::at([0.9, 0.3])],
-//! })?;
-//! assert!(scenario.remarks().is_empty()); // every task can be reached, and no link crosses a wall
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! [`mission::run`] runs the mission to its end. [`Watcher`](mission::Watcher)s see every control
-//! period; the [`Summary`](summary::Summary) that the program prints is one of them.
-//!
-//! ```
-//! # use pleach::automaton::network::scenario::{
-//! #     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
-//! #     WorkspaceOutline,
-//! # };
-//! # let robot = |x, y| RobotStart::at([x, y], 0.075);
-//! # let scenario = ValidScenario::new(Scenario {
-//! #     name: "room".into(),
-//! #     description: None,
-//! #     workspace: WorkspaceOutline {
-//! #         boundary: vec![[0.0, 0.0], [1.2, 0.0], [1.2, 0.6], [0.0, 0.6]],
-//! #         holes: vec![],
-//! #     },
-//! #     link: LinkRanges::new(0.4, 0.5),
-//! #     control: Control::default(),
-//! #     mission: Agenda::default(),
-//! #     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
-//! #     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
-//! #     task: vec![Task::at([0.9, 0.3])],
-//! # })?;
-//! use pleach::automaton::network::record::Outcome;
-//! use pleach::summary::Summary;
-//!
-//! let mut summary = Summary::new(&scenario);
-//! let completed = pleach::mission::run(&scenario, &mut [&mut summary])?;
-//!
-//! assert_eq!(completed.end.outcome, Outcome::Serviced);
-//! assert_eq!(summary.recruits(), 1); // one relay between the access point and the leader
-//!
-//! // The monitor has checked every instant of the mission against the properties in `verify`.
-//! let closest = completed.extremes.pair_distance.ok_or("there are three robots")?;
-//! assert!(closest.value >= 2.0 * 0.01); // 2ρ, where ρ is l/40 by default
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! The README has a custom watcher of a few lines. A custom medium, for example one that delays
-//! messages within a control period, goes into the network that [`mission::run_network`] runs; for
-//! one that loses messages there is [`mission::run_network_with_faults`].
-//!
-//! # An automaton
-//!
-//! The discrete behaviour of a robot is a few automata over its state. They are values too: the
-//! tables that are run can also be queried and drawn.
-//!
-//! ```
-//! use pleach::automaton::{diagram, network::duty_automaton};
-//! use pleach::discrete::network::{Activity, DutyEvent};
-//!
-//! let automaton = duty_automaton()?;
-//! let duties = automaton.table();
-//! assert_eq!(duties.next(Activity::Standby, DutyEvent::Elected), Ok(Activity::Leading));
-//! // A leaf services a task: it leaves only when another robot has taken its place.
-//! assert!(duties.next(Activity::Leaf, DutyEvent::Retired).is_err());
-//! assert!(diagram::mermaid(&automaton).starts_with("stateDiagram-v2"));
-//! # Ok::<(), pleach::automaton::BuildError>(())
-//! ```
+//! With the feature `network`, which the default feature `cli` brings along, the crate has the model
+//! that was written with it: the robot network of *Global Planning for Multi-Robot Communication
+//! Networks in Complex Environments*, robots that grow trees of relays from access points to tasks.
+//! Each robot is an automaton that decides from its own state and from the messages that it
+//! receives. The module `mission` runs it.
 //!
 //! # Where to read on
 //!
 //! | layer | holds |
 //! | --- | --- |
 //! | [`guards`] | predicates over states with a signed margin |
-//! | [`discrete`] | locations, events, tables; [of the network](discrete::network): roles, elections, posts, agreements |
-//! | [`continuous`] | [flows](continuous::flow), [geometry](continuous::geometry); [of the network](continuous::network): links, routing, motion, certified acceptance |
-//! | [`automaton`] | automaton, composition, executor, trajectories, checks, diagrams; [the network](automaton::network): robots, medium, composition |
-//! | [`verify`] | [temporal logic](verify::temporal) over trajectories; [the properties of the network](verify::network), each stated once, and their monitor; [reachability](verify::reach) of any automaton |
-//! | this crate | [scenario files](scenario_file), [missions](mission), [traces](trace), [summaries](summary), [stories](story), [figures], [pages](page); models and questions of [SpaceEx](spaceex) |
+//! | [`discrete`] | locations, events, tables |
+//! | [`continuous`] | [flows](continuous::flow) |
+//! | [`automaton`] | automaton, composition, executor, trajectories, checks, diagrams |
+//! | [`verify`] | [temporal logic](verify::temporal) over trajectories, [reachability](verify::reach) of any automaton |
+//! | this crate | the [prelude], [pages](page) on which a run plays; with the feature `spaceex` models and questions of SpaceEx |
 //!
-//! `docs/model.md` in the repository leads from each equation and algorithm of the paper to the item
-//! that implements it.
+//! Without its default features the crate is this framework: it needs neither geometry nor a solver.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
 
@@ -169,10 +137,14 @@ extern crate self as pleach;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
+mod colours;
+#[cfg(feature = "network")]
 pub mod figures;
 #[cfg(feature = "cli")]
 pub mod import;
+#[cfg(feature = "network")]
 pub mod judge;
+#[cfg(feature = "network")]
 pub mod mission;
 pub mod page;
 #[cfg(feature = "pdf")]
@@ -180,14 +152,19 @@ pub mod pdf;
 pub mod prelude;
 #[cfg(feature = "mcap")]
 pub mod recording;
+#[cfg(feature = "network")]
 pub mod scenario_file;
-#[cfg(feature = "cli")]
+#[cfg(feature = "spaceex")]
 pub mod spaceex;
+#[cfg(feature = "network")]
 pub mod starts;
+#[cfg(feature = "network")]
 pub mod story;
+#[cfg(feature = "network")]
 pub mod summary;
 #[cfg(feature = "cli")]
 pub mod task_list;
+#[cfg(feature = "network")]
 pub mod trace;
 
 pub use pleach_automaton as automaton;
@@ -196,8 +173,8 @@ pub use pleach_discrete as discrete;
 pub use pleach_guards as guards;
 pub use pleach_verify as verify;
 
-/// The example of the README compiles and runs.
-#[cfg(doctest)]
+/// The examples of the README compile and run.
+#[cfg(all(doctest, feature = "network"))]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
@@ -207,7 +184,7 @@ struct Readme;
 struct Reachability;
 
 /// The examples of the how-tos compile and run.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "network"))]
 mod how_to {
     #[doc = include_str!("../docs/how-to/controller.md")]
     struct Controller;

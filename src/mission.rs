@@ -5,6 +5,112 @@
 //! shows it to the [`Watcher`]s: the trace writer, the progress display, the summary, the
 //! figures. None of them can influence the robots; a violated property ends the run, and so does
 //! a watcher that asks for it.
+//!
+//! # A room
+//!
+//! A [`Scenario`](crate::automaton::network::scenario::Scenario) is plain data. A
+//! [`ValidScenario`](crate::automaton::network::scenario::ValidScenario) is one from which a mission can
+//! start: read from a file by [`scenario_file::read`](crate::scenario_file::read), or built as here. This is a room of 1.2 by 0.6
+//! with an access point at the left and a task at the right, farther away than one link reaches.
+//!
+//! ```
+//! use pleach::automaton::network::scenario::{
+//!     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+//!     WorkspaceOutline,
+//! };
+//!
+//! let robot = |x, y| RobotStart::at([x, y], 0.075);
+//! let scenario = ValidScenario::new(Scenario {
+//!     name: "room".into(),
+//!     description: None,
+//!     workspace: WorkspaceOutline {
+//!         boundary: vec![[0.0, 0.0], [1.2, 0.0], [1.2, 0.6], [0.0, 0.6]],
+//!         holes: vec![],
+//!     },
+//!     link: LinkRanges::new(0.4, 0.5),
+//!     control: Control::default(),
+//!     mission: Agenda::default(),
+//!     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
+//!     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
+//!     task: vec![Task::at([0.9, 0.3])],
+//! })?;
+//! assert!(scenario.remarks().is_empty()); // every task can be reached, and no link crosses a wall
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`run`] runs the mission to its end. [`Watcher`]s see every control
+//! period; the [`Summary`](crate::summary::Summary) that the program prints is one of them.
+//!
+//! ```
+//! # use pleach::automaton::network::scenario::{
+//! #     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+//! #     WorkspaceOutline,
+//! # };
+//! # let robot = |x, y| RobotStart::at([x, y], 0.075);
+//! # let scenario = ValidScenario::new(Scenario {
+//! #     name: "room".into(),
+//! #     description: None,
+//! #     workspace: WorkspaceOutline {
+//! #         boundary: vec![[0.0, 0.0], [1.2, 0.0], [1.2, 0.6], [0.0, 0.6]],
+//! #         holes: vec![],
+//! #     },
+//! #     link: LinkRanges::new(0.4, 0.5),
+//! #     control: Control::default(),
+//! #     mission: Agenda::default(),
+//! #     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
+//! #     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
+//! #     task: vec![Task::at([0.9, 0.3])],
+//! # })?;
+//! use pleach::automaton::network::record::Outcome;
+//! use pleach::summary::Summary;
+//!
+//! let mut summary = Summary::new(&scenario);
+//! let completed = pleach::mission::run(&scenario, &mut [&mut summary])?;
+//!
+//! assert_eq!(completed.end.outcome, Outcome::Serviced);
+//! assert_eq!(summary.recruits(), 1); // one relay between the access point and the leader
+//!
+//! // The monitor has checked every instant of the mission against the properties in `verify`.
+//! let closest = completed.extremes.pair_distance.ok_or("there are three robots")?;
+//! assert!(closest.value >= 2.0 * 0.01); // 2ρ, where ρ is l/40 by default
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The README has a custom watcher of a few lines. A custom medium, for example one that delays
+//! messages within a control period, goes into the network that [`run_network`] runs; for
+//! one that loses messages there is [`run_network_with_faults`].
+//!
+//! # An automaton
+//!
+//! The discrete behaviour of a robot is a few automata over its state. They are values too: the
+//! tables that are run can also be queried and drawn.
+//!
+//! ```
+//! use pleach::automaton::{diagram, network::duty_automaton};
+//! use pleach::discrete::network::{Activity, DutyEvent};
+//!
+//! let automaton = duty_automaton()?;
+//! let duties = automaton.table();
+//! assert_eq!(duties.next(Activity::Standby, DutyEvent::Elected), Ok(Activity::Leading));
+//! // A leaf services a task: it leaves only when another robot has taken its place.
+//! assert!(duties.next(Activity::Leaf, DutyEvent::Retired).is_err());
+//! assert!(diagram::mermaid(&automaton).starts_with("stateDiagram-v2"));
+//! # Ok::<(), pleach::automaton::BuildError>(())
+//! ```
+//!
+//!
+//! # Where to read on
+//!
+//! | layer | holds, of the network |
+//! | --- | --- |
+//! | [`discrete::network`](crate::discrete::network) | roles, elections, posts, agreements |
+//! | [`continuous`](crate::continuous) | [geometry](crate::continuous::geometry); [links, routing, motion, certified acceptance](crate::continuous::network) |
+//! | [`automaton::network`](crate::automaton::network) | robots, medium, composition |
+//! | [`verify::network`](crate::verify::network) | the properties, each stated once, and their monitor |
+//! | this crate | [scenario files](crate::scenario_file), missions, [traces](crate::trace), [summaries](crate::summary), [stories](crate::story), [figures](crate::figures), [pages](crate::page) |
+//!
+//! `docs/model.md` in the repository leads from each equation and algorithm of the paper to the item
+//! that implements it.
 
 use std::collections::BTreeMap;
 use std::io;

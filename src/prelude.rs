@@ -7,5 +7,5 @@ pub use pleach_automaton::{
 };
 pub use pleach_discrete::{Event, Location, Urgency, vocabulary};
 pub use pleach_guards::{
-    Expression, Guard, Predicate, Valuation, always, constant, never, norm, not, variable,
+    Expression, Guard, Predicate, Table, Valuation, always, constant, never, norm, not, variable,
 };

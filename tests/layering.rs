@@ -1,8 +1,10 @@
 //! The layering that `docs/architecture.md` describes, read off manifests and sources.
 
 use crate::sources::{files_below, lines_of_code, manifest, read, relative, root};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 /// The packages that users depend on, the root package first.
 const PACKAGES: [&str; 7] =
@@ -162,6 +164,23 @@ fn processes_are_built_by_themselves_and_run_the_same_nodes() {
 fn every_picture_is_drawn_with_one_layer() {
     for package in PACKAGES.into_iter().filter(|package| *package != "drawing") {
         assert!(!dependencies(package).contains(&"svg".to_owned()), "{package:?} draws by itself");
+    }
+}
+
+/// Who models something else than robots builds neither geometry nor a solver.
+#[test]
+fn the_framework_stands_alone() {
+    let mut tree = Command::new(env!("CARGO"));
+    tree.args(["tree", "-p", "pleach", "--no-default-features", "-e", "normal", "--offline"]);
+    let output = tree.args(["--prefix", "none"]).current_dir(root()).output().unwrap();
+    let listed = String::from_utf8(output.stdout).unwrap();
+    let packages: BTreeSet<&str> =
+        listed.lines().map(|line| line.trim_end_matches(" (*)")).collect();
+    let names: BTreeSet<&str> =
+        packages.iter().filter_map(|package| package.split(' ').next()).collect();
+    assert!(names.contains("pleach-verify") && packages.len() <= 50, "{packages:?}");
+    for left_out in ["bvh", "clarabel", "i_overlay", "robust", "spade", "toml", "clap"] {
+        assert!(!names.contains(left_out), "{left_out} is built with the framework");
     }
 }
 

@@ -594,6 +594,57 @@ fn outputs_are_tried_and_numbers_below_zero_read_before_anything_is_enclosed() {
     assert_eq!(std::fs::read_to_string(&kept).expect("it is there"), "{}");
 }
 
+/// What other tools and editors write, and what is no matter to the answer.
+#[test]
+fn small_liberties_of_other_tools_are_taken() {
+    let [model, configuration] = BALL;
+    let options = format!("{configuration}\nadditional-options = \"\"\n");
+    let over_lines = configuration.replace(" & ", "\n  & ");
+    assert_ne!(over_lines, configuration);
+    let linked =
+        model.replace("<map key=\"c\">0.75</map>", "<map key=\"c\">.75<link target=\"1\"/></map>");
+    assert_ne!(linked, model);
+    for (model, configuration) in
+        [(model, &*options), (model, &over_lines), (&*linked, configuration)]
+    {
+        assert_eq!(verdict(&problem([model, configuration])), Verdict::Holds);
+    }
+    assert!(refusal(model, &options.replace("\"\"", "\"")).contains("single quotation mark"));
+}
+
+/// A variable of an inner component may be named without it where there is no other of the name.
+#[test]
+fn inner_variables_may_be_named_briefly() {
+    let brief = RELAY[1].replace("room.lamp.age", "age");
+    assert_ne!(brief, RELAY[1]);
+    assert_eq!(verdict(&problem([RELAY[0], &brief])), Verdict::Holds);
+}
+
+/// An output is what the invariants say, in invariants, guards, flows and questions.
+#[test]
+fn outputs_stand_for_their_formulas() {
+    let model = r#"<sspaceex><component id="tank">
+        <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
+        <param name="y" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
+        <param name="z" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
+        <location id="1" name="filling">
+            <invariant>y == 2*x + 1 &amp; z == y - x &amp; y &lt;= 5</invariant>
+            <flow>x' == z - x</flow>
+        </location>
+    </component></sspaceex>"#;
+    let asked = |forbidden: &str| {
+        let configuration = format!(
+            "initially = \"x == 0\"\nforbidden = \"{forbidden}\"\noutput-variables = \"x, y\"\ntime-horizon = 10\n"
+        );
+        problem([model, &configuration])
+    };
+    // x′ is 1, up to where y is 5.
+    assert_eq!(asked("y >= 5.1").automata[0].names(), ["x"]);
+    assert_eq!(verdict(&asked("y >= 5.1")), Verdict::Holds);
+    assert_eq!(verdict(&asked("x >= 2.1")), Verdict::Holds);
+    assert_eq!(verdict(&asked("y >= 4.5")), Verdict::Violated);
+}
+
 /// The time to read a model grows with its length, and not with its square.
 #[test]
 fn a_model_of_many_lines_is_read_in_a_moment() {

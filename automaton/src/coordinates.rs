@@ -6,7 +6,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::{Add, Deref, Div, Mul, Neg, Sub};
 
-use pleach_guards::{Expression, Valuation, constant, variable};
+use pleach_guards::{Expression, Valuation, variable};
 
 use crate::flow::Rate;
 use crate::reset::{Assignment, NewValue};
@@ -130,6 +130,27 @@ impl<S> From<&Coordinate<S>> for Expression {
     }
 }
 
+/// A number on the left.
+macro_rules! number {
+    ($trait:ident, $symbol:tt, $method:ident, $number:ty) => {
+        impl<S> $trait<Coordinate<S>> for $number {
+            type Output = Expression;
+
+            fn $method(self, right: Coordinate<S>) -> Expression {
+                Expression::from(self) $symbol right.expression
+            }
+        }
+
+        impl<S> $trait<&Coordinate<S>> for $number {
+            type Output = Expression;
+
+            fn $method(self, right: &Coordinate<S>) -> Expression {
+                Expression::from(self) $symbol &right.expression
+            }
+        }
+    };
+}
+
 macro_rules! operator {
     ($trait:ident, $method:ident, $symbol:tt) => {
         impl<S, E: Into<Expression>> $trait<E> for Coordinate<S> {
@@ -148,21 +169,8 @@ macro_rules! operator {
             }
         }
 
-        impl<S> $trait<Coordinate<S>> for f64 {
-            type Output = Expression;
-
-            fn $method(self, right: Coordinate<S>) -> Expression {
-                constant(self) $symbol right.expression
-            }
-        }
-
-        impl<S> $trait<&Coordinate<S>> for f64 {
-            type Output = Expression;
-
-            fn $method(self, right: &Coordinate<S>) -> Expression {
-                constant(self) $symbol &right.expression
-            }
-        }
+        number!($trait, $symbol, $method, f64);
+        number!($trait, $symbol, $method, i32);
     };
 }
 

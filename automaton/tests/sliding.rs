@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use pleach_automaton::check::{Finding, Kind};
 use pleach_automaton::{
     Automaton, Builder, Composition, Coordinates, Filippov, Reason, Trajectory, coordinates, from,
 };
@@ -69,6 +70,56 @@ fn jumps_back_and_forth_along_one_flow_are_no_sliding() {
     };
     assert!(matches!(reason(1.0, -1.0), Reason::Sliding(_)));
     assert_eq!(reason(1.0, 1.0), Reason::JumpLimit);
+}
+
+/// However slow a side is, jumps to and fro over one boundary are sliding; with room between the guards they
+/// are none, however little it is.
+#[test]
+fn slow_sliding_is_recognised_and_hysteresis_is_none() {
+    let Point { x } = Point::coordinates();
+    let reason = |rates: [f64; 2], start: f64, room: f64| {
+        let parts = sides(Point { x: start }, x.more_than(0.5), x.at_most(0.5 - room));
+        let both = parts.flow(Before, x.rate(rates[0])).flow(Behind, x.rate(-rates[1]));
+        both.build().expect("it is sound").run(2e3).expect("it can be run").ending().reason.clone()
+    };
+    for start in [0.0_f64, -1e3] {
+        for rates in [[1.0, 0.01], [1.0, 1e-4], [1.0, 1e-9], [0.01, 1.0], [1e3, 1e-3], [1.0, 1e3]] {
+            let rates = rates.map(|rate: f64| if start < 0.0 { rate.max(1.0) } else { rate });
+            let Reason::Sliding(sliding) = reason(rates, start, 0.0) else {
+                panic!("{rates:?}: {:?}", reason(rates, start, 0.0))
+            };
+            let share = rates[sliding.locations[0]] / (rates[0] + rates[1]);
+            assert!((sliding.share - share).abs() < 1e-9, "{}", sliding.share);
+        }
+    }
+    for room in [1e-3, 1e-6, 1e-9] {
+        let slow = [room, room];
+        assert_eq!(reason(slow, 0.5 - room, room), Reason::Horizon, "{room}");
+    }
+}
+
+/// What a run would find is found before it runs, where no reset and no room keeps the sides apart.
+#[test]
+fn checks_find_where_flows_face_each_other() {
+    let Plane { px, py } = Plane::coordinates();
+    let found = |rates: [f64; 2], room: f64| {
+        let there = (&px + 2.0 * &py).more_than(0.5);
+        let back = (&px + 2.0 * &py).at_most(0.5 - room);
+        let parts = sides(Plane { px: 0.0, py: 0.0 }, there, back);
+        let both = parts
+            .flow(Before, [px.rate(rates[0]), py.rate(-1.0)])
+            .flow(Behind, [px.rate(-rates[1]), py.rate(1.0)]);
+        let report = both.build().expect("it is sound").check();
+        let is_sliding = |finding: &&Finding| finding.kind == Kind::Sliding;
+        report.findings().iter().find(is_sliding).map(ToString::to_string)
+    };
+    let text = found([2.01, 2.01], 0.0).expect("both flows lead to the boundary");
+    for part in ["warning", "`before`", "`behind`", "with_sliding", "for example at"] {
+        assert!(text.contains(part), "{text}");
+    }
+    assert_eq!(found([2.01, 1.99], 0.0), None, "the flow leads through");
+    assert_eq!(found([1.99, 1.99], 0.0), None, "both flows lead away");
+    assert_eq!(found([2.01, 2.01], 0.1), None, "there is room");
 }
 
 /// Nor are jumps back and forth over two boundaries that meet: no mixture of the flows stays on both.

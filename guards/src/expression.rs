@@ -310,10 +310,38 @@ impl From<f64> for Expression {
     }
 }
 
+/// `x.rate(1)` is `x.rate(1.0)`.
+impl From<i32> for Expression {
+    fn from(value: i32) -> Self {
+        constant(f64::from(value))
+    }
+}
+
 impl From<&Expression> for Expression {
     fn from(expression: &Expression) -> Self {
         expression.clone()
     }
+}
+
+/// A number on the left.
+macro_rules! number {
+    ($trait:ident, $method:ident, $number:ty) => {
+        impl $trait<Expression> for $number {
+            type Output = Expression;
+
+            fn $method(self, right: Expression) -> Expression {
+                Expression::from(self).$method(right)
+            }
+        }
+
+        impl $trait<&Expression> for $number {
+            type Output = Expression;
+
+            fn $method(self, right: &Expression) -> Expression {
+                Expression::from(self).$method(right.clone())
+            }
+        }
+    };
 }
 
 macro_rules! operator {
@@ -334,21 +362,8 @@ macro_rules! operator {
             }
         }
 
-        impl $trait<Expression> for f64 {
-            type Output = Expression;
-
-            fn $method(self, right: Expression) -> Expression {
-                constant(self).binary(BinaryOperator::$operator, right)
-            }
-        }
-
-        impl $trait<&Expression> for f64 {
-            type Output = Expression;
-
-            fn $method(self, right: &Expression) -> Expression {
-                constant(self).binary(BinaryOperator::$operator, right.clone())
-            }
-        }
+        number!($trait, $method, f64);
+        number!($trait, $method, i32);
     };
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::figures::palette;
+use crate::colours;
 
 const FRAME: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
@@ -60,6 +60,7 @@ impl Row {
     }
 
     /// A row that speaks of control period `step`.
+    #[cfg(feature = "network")]
     pub fn at(name: impl Into<String>, text: String, step: usize) -> Row {
         Row { name: name.into(), text, at: Some(step) }
     }
@@ -80,7 +81,7 @@ impl Document<'_> {
         // Whatever the data say, they cannot end the element that holds them.
         let data = self.data.to_string().replace('<', "\\u003c");
         let script = SCRIPTS.join("\n");
-        let style = format!("{}\n{STYLE}", palette::style_sheet());
+        let style = format!("{}\n{STYLE}", colours::style_sheet());
         let parts = [
             ("title", escaped(self.title)),
             ("lead", self.lead.map_or_else(String::new, escaped)),

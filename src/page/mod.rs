@@ -1,8 +1,9 @@
 //! Pages on which a run plays.
 //!
 //! A page is one HTML file that needs no other and no network: the run as data, and scripts that
-//! show it. [`MissionPage`] makes the page of a mission while it runs,
-//! [`of_trace`] from its trace, and [`TrajectoryPage`] that of a run of any automaton or composition.
+//! show it. [`TrajectoryPage`] makes the page of a run of any automaton or composition. With the
+//! feature `network`, [`MissionPage`] makes that of a mission while it runs, and [`of_trace`] from
+//! its trace.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -15,14 +16,21 @@
 //! | `assets/mission.js` | what is told of a mission, its robots and links |
 //! | `assets/run.js` | what is told of a trajectory, and the drawings of its automata |
 
+#[cfg(feature = "network")]
 mod choices;
 mod document;
+#[cfg(feature = "network")]
 mod mission;
+#[cfg(feature = "network")]
 mod steps;
+#[cfg(feature = "network")]
 mod table;
+#[cfg(feature = "network")]
 mod trace;
 mod trajectory;
 
+#[cfg(feature = "network")]
 pub use mission::MissionPage;
+#[cfg(feature = "network")]
 pub use trace::{PageError, of_trace};
 pub use trajectory::{Drawing, TrajectoryPage};

@@ -43,14 +43,32 @@ fn without_comment(line: &str) -> &str {
     begins.map_or(line, |at| &line[..at])
 }
 
+/// A line, with those after it up to the one that closes its quotation marks, if there is one.
+fn to_closing_quote<'t>(
+    first: &str,
+    lines: &mut (impl Iterator<Item = (usize, &'t str)> + Clone),
+) -> String {
+    let is_open = |text: &str| without_comment(text).matches('"').count() % 2 == 1;
+    let (mut joined, mut ahead) = (first.to_owned(), lines.clone());
+    while is_open(&joined) {
+        let Some((_, next)) = ahead.next() else { return first.to_owned() };
+        joined.push(' ');
+        joined.push_str(next);
+    }
+    *lines = ahead;
+    joined
+}
+
 impl Options {
     pub fn read(text: &str) -> Result<Self, SpaceExError> {
         let mut options = Options { initially: (0, vec![vec![]]), ..Options::default() };
-        let mut known: Vec<(&str, usize)> = Vec::new();
+        let mut known: Vec<(String, usize)> = Vec::new();
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        for (line, content) in (1..).zip(text.lines()) {
+        let mut lines = (1..).zip(text.lines());
+        while let Some((line, first)) = lines.next() {
             let wrong = |problem: String| SpaceExError::Configuration { line, problem };
-            let content = without_comment(content).trim();
+            let content = to_closing_quote(first, &mut lines);
+            let content = without_comment(&content).trim();
             if content.is_empty() || content.starts_with(';') {
                 continue;
             }
@@ -59,13 +77,13 @@ impl Options {
             };
             let key = key.trim();
             let may_repeat = key == "directions";
-            let before = known.iter().find(|(one, _)| *one == key && !may_repeat);
+            let before = known.iter().find(|(one, _)| one == key && !may_repeat);
             if let Some((_, first)) = before {
                 return Err(wrong(format!(
                     "`{key}` stands in line {first} already: leave one out"
                 )));
             }
-            known.push((key, line));
+            known.push((key.to_owned(), line));
             let value = unquoted(value).map_err(wrong)?;
             let number = || -> Result<f64, SpaceExError> {
                 let number: f64 =
@@ -105,6 +123,7 @@ impl Options {
                 }
                 // Of other tools' methods and outputs.
                 "scenario"
+                | "additional-options"
                 | "output-format"
                 | "output-file"
                 | "rel-err"
@@ -147,6 +166,8 @@ impl Options {
                 }
             }
         }
+        let is_output = |name: &String| matches!(network.inner.get(name), Some(Bound::Formula(_)));
+        self.shown.1.retain(|name| !is_output(name));
         for name in &mut self.shown.1 {
             if let Some(Bound::Name(global)) = network.inner.get(name) {
                 name.clone_from(global);

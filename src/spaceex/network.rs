@@ -3,6 +3,8 @@
 //! The instances of base components run side by side. A label that several of them know is taken by
 //! all of these together.
 
+mod outputs;
+
 use std::collections::BTreeMap;
 
 use crate::guards::{Expression, Substitution, constant};
@@ -26,6 +28,8 @@ pub(super) enum Bound {
     /// A parameter of the whole.
     Name(String),
     Number(f64),
+    /// What an invariant in every location says that an output is.
+    Formula(Expression),
 }
 
 /// A parameter of the whole.
@@ -56,7 +60,23 @@ impl<'a> Network<'a> {
         network.add(components, system, "", BTreeMap::new(), 0)?;
         let Network { known, inner, .. } = &mut network;
         inner.retain(|name, _| !known.contains_key(name));
+        network.name_briefly();
+        outputs::resolve(&mut network)?;
         Ok(network)
+    }
+
+    /// What belongs to an inner component may be named without it, where that is clear.
+    fn name_briefly(&mut self) {
+        let mut brief: BTreeMap<String, Vec<&String>> = BTreeMap::new();
+        for (name, known) in &self.known {
+            if let (false, Some((_, own))) = (known.is_label, name.rsplit_once('.')) {
+                brief.entry(own.to_owned()).or_default().push(name);
+            }
+        }
+        brief.retain(|own, names| names.len() == 1 && !self.known.contains_key(own));
+        let brief: Vec<_> =
+            brief.into_iter().map(|(own, names)| (own, Bound::Name(names[0].clone()))).collect();
+        self.inner.extend(brief);
     }
 
     fn add(
@@ -161,7 +181,7 @@ impl Instance<'_> {
     pub fn global(&self, name: &str) -> Option<&str> {
         match self.names.get(name)? {
             Bound::Name(global) => Some(global),
-            Bound::Number(_) => None,
+            Bound::Number(_) | Bound::Formula(_) => None,
         }
     }
 
@@ -328,6 +348,7 @@ fn substitution(names: &BTreeMap<String, Bound>) -> Substitution {
         let value = match bound {
             Bound::Name(global) => crate::guards::variable(global),
             Bound::Number(value) => constant(*value),
+            Bound::Formula(formula) => formula.clone(),
         };
         (name, value)
     }))

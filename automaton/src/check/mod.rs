@@ -89,6 +89,7 @@ mod product;
 mod reachability;
 mod report;
 mod robustness;
+mod sliding;
 mod structure;
 
 pub use report::{Exclusion, Finding, FindingPlace, Kind, Report, Severity};
@@ -149,6 +150,7 @@ fn examined(model: &Model, effort: Effort) -> (Inquiry<'_>, Reach) {
     inquiry.report_landings(&reach);
     inquiry.report_undefined(&reach);
     inquiry.report_cycles(&reach);
+    inquiry.report_sliding(&reach);
     inquiry.report_overlaps(&reach);
     let shadowed = inquiry.report_shadowed(&reach);
     inquiry.report_unreached(&reach, &shadowed);

@@ -160,6 +160,35 @@ impl Model {
         in_predicates.chain(in_formulas).map(str::to_owned).collect()
     }
 
+    /// What reads the variable called `name`, besides the transitions on an event.
+    pub(crate) fn reader_of(&self, name: &str, except: Option<usize>) -> Option<String> {
+        let reads = |formula: &Expression| formula.variables().contains(name);
+        let is_read = |predicate: &Predicate| predicate.variables().contains(name);
+        let of_mode = |mode: &Mode| {
+            let part = match mode {
+                _ if mode.rates().iter().any(|(_, rate)| reads(rate)) => "flow",
+                _ if is_read(&mode.invariant) => "invariant",
+                _ => return None,
+            };
+            Some(format!("the {part} of location `{}`", mode.name))
+        };
+        let others = self.transitions.iter().filter(|one| Some(one.event) != except);
+        let of_transition = |one: &Transition| {
+            let ends = || one.intervals.iter().flat_map(|(_, ends)| ends);
+            let part = match one {
+                _ if is_read(one.guard.predicate()) => "guard",
+                _ if one.assignments().iter().any(|(_, value)| reads(value))
+                    || ends().any(reads) =>
+                {
+                    "reset"
+                }
+                _ => return None,
+            };
+            Some(format!("the {part} of event `{}`", self.events[one.event]))
+        };
+        self.modes.iter().find_map(of_mode).or_else(|| others.into_iter().find_map(of_transition))
+    }
+
     pub(crate) fn mode_at(&self, location: usize) -> FindingPlace {
         FindingPlace {
             component: self.component.clone(),

@@ -91,6 +91,8 @@ pub enum Kind {
     LeavesRange,
     /// Forced transitions that follow each other forever while no time passes.
     TimelessCycle,
+    /// Two locations whose flows both lead to the boundary between them.
+    Sliding,
     /// Nothing says in which state a run starts.
     NoInitialState,
     /// The initial state is outside the invariant of the initial location; an error if nothing can go
@@ -235,6 +237,7 @@ impl Kind {
             Kind::Undefined => "no value",
             Kind::LeavesRange => "leaves its range",
             Kind::TimelessCycle => "timeless cycle",
+            Kind::Sliding => "sliding",
             Kind::NoInitialState => "no initial state",
             Kind::StartsOutside => "starts outside",
             Kind::StartsOutOfRange => "starts out of range",

@@ -11,6 +11,7 @@ use pleach_guards::{EvaluationError, Valuation};
 pub use error::CompositionError;
 
 use super::blueprint::Blueprint;
+use super::sampler::Sampler;
 use super::{Accumulation, Channel, Component, Composition};
 use crate::automaton::Automaton;
 use crate::check::model::Model;
@@ -24,6 +25,8 @@ pub struct CompositionBuilder {
     labels: Vec<String>,
     /// From an output to an input.
     connections: Vec<(String, String)>,
+    /// Components that sample others; they come after these.
+    samplers: Vec<Sampler>,
     /// Components that carry messages; they come after all others.
     channels: Vec<Channel>,
     /// Whether the part added last is the first of many that are alike.
@@ -176,6 +179,19 @@ impl CompositionBuilder {
         self
     }
 
+    /// The event of a component, written `component.event`, is taken at 0, `period`, 2 `period`, …: a
+    /// sampled controller needs no clock of its own. Its transitions with the event say what is done
+    /// then and not when, as `may(always())`; the clock becomes a component after all others.
+    pub fn every(self, event: &str, period: f64) -> Self {
+        self.every_from(event, period, 0.0)
+    }
+
+    /// As [`every`](Self::every), at `phase` ≥ 0, `phase` + `period`, … seconds.
+    pub fn every_from(mut self, event: &str, period: f64, phase: f64) -> Self {
+        self.samplers.push(Sampler { event: event.to_owned(), period, phase });
+        self
+    }
+
     /// Messages go from one component to another, or back to the same. The channel becomes a
     /// component after all others, and the events of both ends are then called `component.event`,
     /// unless they are labels with a name already.
@@ -193,7 +209,7 @@ impl CompositionBuilder {
         if let Some(fault) = self.fault.take() {
             return Err(fault);
         }
-        self = self.join_channels()?;
+        self = self.join_samplers()?.join_channels()?;
         self.check_names()?;
         let sources = self.sources()?;
         let mut composition = Composition {

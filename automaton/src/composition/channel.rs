@@ -85,13 +85,23 @@ pub struct Channel {
     pub(super) output: String,
     pub(super) inputs: Vec<String>,
     pub(super) name: String,
-    /// From a coordinate of the sender to an input of the receiver.
-    contents: Vec<(String, String)>,
+    contents: Vec<Content>,
     /// The shortest and the longest time that a message takes, in seconds; none if any time.
     delay: Option<(f64, f64)>,
     capacity: usize,
     is_lossy: bool,
     is_lasting: bool,
+}
+
+/// A value that messages carry.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Content {
+    /// A coordinate of the sender.
+    output: String,
+    /// An input of the receiver.
+    pub(super) input: String,
+    /// Where the value of the last arrival is held: what is read before the first.
+    initial: Option<f64>,
 }
 
 impl Channel {
@@ -102,10 +112,28 @@ impl Channel {
     /// Several channels may have one output, which is then sent on all of them. An input belongs to
     /// one channel.
     pub fn new(output: &str, input: &str) -> Self {
+        let inputs = vec![input.to_owned()];
+        Channel { inputs, name: format!("{output} → {input}"), ..Channel::holding_last(output) }
+    }
+
+    /// From the event `output` of a component, written `component.event`, to [held](Self::held)
+    /// values: messages arrive without an event of a receiver. The channel is called after its output.
+    ///
+    /// A controller samples, and its output takes effect a tenth of a second later:
+    ///
+    /// ```
+    /// use pleach_automaton::composition::Channel;
+    ///
+    /// let delay = Channel::holding_last("controller.sample")
+    ///     .held("controller.u", "plant.u", 0.0)
+    ///     .taking(0.1, 0.1)
+    ///     .holding(11);
+    /// ```
+    pub fn holding_last(output: &str) -> Self {
         Channel {
             output: output.to_owned(),
-            inputs: vec![input.to_owned()],
-            name: format!("{output} → {input}"),
+            inputs: Vec::new(),
+            name: format!("{output} →"),
             contents: Vec::new(),
             delay: None,
             capacity: 1,
@@ -129,10 +157,23 @@ impl Channel {
     }
 
     /// A message carries the value that the sender's coordinate `output` has when it is sent, x⁻;
-    /// the receiver reads it as its coordinate `input` when the message arrives. Both are written
-    /// `component.coordinate`.
-    pub fn carrying(mut self, output: &str, input: &str) -> Self {
-        self.contents.push((output.to_owned(), input.to_owned()));
+    /// the receiver reads it as its coordinate `input` in the jump in which the message arrives, and
+    /// nowhere else: a message under way cannot be read. Both are written `component.coordinate`.
+    pub fn carrying(self, output: &str, input: &str) -> Self {
+        self.with_content(output, input, None)
+    }
+
+    /// A message carries the value that the sender's coordinate `output` has when it is sent, x⁻, and
+    /// the channel holds the value that arrived last, `initial` before the first arrival. The receiver
+    /// reads it at any time as its coordinate `input`; in the jump of an arrival it reads the value
+    /// before, as of all that a jump changes.
+    pub fn held(self, output: &str, input: &str, initial: f64) -> Self {
+        self.with_content(output, input, Some(initial))
+    }
+
+    fn with_content(mut self, output: &str, input: &str, initial: Option<f64>) -> Self {
+        let (output, input) = (output.to_owned(), input.to_owned());
+        self.contents.push(Content { output, input, initial });
         self
     }
 
@@ -161,6 +202,12 @@ impl Channel {
         self
     }
 
+    /// The inputs that carry values in the jump of an arrival alone.
+    pub(super) fn carried(&self) -> impl Iterator<Item = &str> {
+        let carried = self.contents.iter().filter(|content| content.initial.is_none());
+        carried.map(|content| &*content.input)
+    }
+
     /// Whether its messages have to arrive in time.
     pub(super) const fn has_deadline(&self) -> bool {
         self.delay.is_some() && !self.is_lasting
@@ -182,6 +229,9 @@ impl Channel {
         if self.capacity == 0 {
             return Err(refuse("it has to hold at least one message"));
         }
+        if self.inputs.is_empty() && self.carried().next().is_some() {
+            return Err(refuse("without an event of the receiver, what is carried has to be held"));
+        }
         if self.is_lasting && (self.delay.is_some() || self.capacity > 1) {
             return Err(refuse("one message that stays takes any time"));
         }
@@ -189,10 +239,11 @@ impl Channel {
             .build()
             .map_err(|_| refuse("a coordinate is carried twice"))?;
         let mut builder = builder.add(&self.name, &automaton).label(send).label(arrive);
-        for (number, (output, input)) in self.contents.iter().enumerate() {
+        for (number, Content { output, input, initial }) in self.contents.iter().enumerate() {
+            let read = if initial.is_some() { held(number) } else { content(number, 0) };
             builder = builder
                 .connect(output, &format!("{}.{}", self.name, sent(number)))
-                .connect(&format!("{}.{}", self.name, content(number, 0)), input);
+                .connect(&format!("{}.{read}", self.name), input);
         }
         Ok(builder)
     }
@@ -206,6 +257,11 @@ fn sent(number: usize) -> String {
 /// The content of a message, the oldest at place 0.
 fn content(number: usize, place: usize) -> String {
     format!("content {} of {}", number + 1, place + 1)
+}
+
+/// The content of the message that arrived last.
+fn held(number: usize) -> String {
+    format!("held {}", number + 1)
 }
 
 /// The time for which a message has been under way.
@@ -229,7 +285,9 @@ impl<'a> Machine<'a> {
             state.extend(contents.clone().map(|number| content(number, place)));
             state.extend(channel.delay.map(|_| age(place)));
         }
-        let state = state.into_iter().map(|name| (name, 0.0)).collect();
+        let mut state: Vec<_> = state.into_iter().map(|name| (name, 0.0)).collect();
+        let initial = |(number, content): (usize, &Content)| Some((held(number), content.initial?));
+        state.extend(channel.contents.iter().enumerate().filter_map(initial));
         Machine { channel, send: Name::new(send), arrive: Name::new(arrive), state }
     }
 
@@ -259,16 +317,18 @@ impl<'a> Machine<'a> {
             }
             let arrival = from(here).on(arrive);
             automaton = match channel.delay {
-                None if channel.is_lasting => automaton.transition(arrival.to(here).may(always())),
+                None if channel.is_lasting => {
+                    automaton.transition(arrival.to(here).may(always()).then(self.hold()))
+                }
                 None => {
                     let arrival = arrival.to(holding(held - 1)).may(always());
-                    automaton.transition(arrival.then(self.take(held)))
+                    automaton.transition(arrival.then(self.arrive(held)))
                 }
                 Some((shortest, longest)) => {
                     let (age, arrival) = (self.variable(&age(0)), arrival.to(holding(held - 1)));
-                    let late = arrival.must(age.at_least(longest)).then(self.take(held));
+                    let late = arrival.must(age.at_least(longest)).then(self.arrive(held));
                     let early = age.at_least(shortest) & age.less_than(longest);
-                    let early = arrival.may(early).then(self.take(held)).priority(1);
+                    let early = arrival.may(early).then(self.arrive(held)).priority(1);
                     let automaton = automaton.transition(late);
                     if shortest < longest { automaton.transition(early) } else { automaton }
                 }
@@ -293,6 +353,22 @@ impl<'a> Machine<'a> {
                 self.variable(&content(number, place)).becomes(self.variable(&sent(number)))
             })
             .chain(self.channel.delay.map(|_| self.variable(&age(place)).becomes(0.0)))
+            .collect()
+    }
+
+    /// The oldest of `held` messages arrives.
+    fn arrive(&self, held: usize) -> Vec<Assignment<Record>> {
+        self.hold().into_iter().chain(self.take(held)).collect()
+    }
+
+    /// What is held becomes what the oldest message says.
+    fn hold(&self) -> Vec<Assignment<Record>> {
+        let contents = self.channel.contents.iter().enumerate();
+        let held_ones = contents.filter(|(_, content)| content.initial.is_some());
+        held_ones
+            .map(|(number, _)| {
+                self.variable(&held(number)).becomes(self.variable(&content(number, 0)))
+            })
             .collect()
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use pleach_continuous::flow::{InvalidFlow, LinearField, Piece, Tolerances, VectorField};
-use pleach_guards::{Interval, Tape};
+use pleach_guards::{Expression, Interval, Tape};
 
 use super::blueprint::{Mode, ModeMotion, RateProgram, Solution};
 use super::group::Group;
@@ -45,7 +45,7 @@ pub(super) struct Field<'a> {
     places: RefCell<Vec<Vec<f64>>>,
     /// Room for the ranges of coordinates, what is computed from them, and those of rates.
     ranges: RefCell<[Vec<Interval>; 3]>,
-    /// Where rates have kinks that are not known beforehand.
+    /// Where rates have kinks that are not known beforehand, or jump.
     hold: Option<Box<Hold<'a>>>,
 }
 
@@ -290,19 +290,32 @@ impl<'a> Field<'a> {
         strain
     }
 
-    /// The first time after `after` at which a rate that is not held on one side is known to have a kink or a jump.
-    pub(super) fn next_kink(&self, after: f64) -> Option<f64> {
-        let is_held = |number: usize| self.hold.as_ref().is_some_and(|hold| hold.holds(number));
-        let free = self.moving.iter().enumerate().filter(|&(number, _)| !is_held(number));
-        let kinks = free.flat_map(|(_, (component, mode))| {
-            let line = |coordinate: usize| match self.rows[component.places[coordinate]] {
-                Row::Line(rate) => Some((self.start[component.places[coordinate]], rate)),
-                Row::Curved | Row::Solved => None,
-            };
+    /// The first instant after `settled` at which a rate is known to have a kink or a jump, unless kinks of its
+    /// component are searched for.
+    pub(super) fn next_kink(&self, settled: f64) -> Option<f64> {
+        let is_searched =
+            |number: usize| self.hold.as_ref().is_some_and(|hold| hold.searches(number));
+        let known = self.moving.iter().enumerate().filter(|&(number, _)| !is_searched(number));
+        let kinks = known.flat_map(|(_, (component, mode))| {
+            let motion = |coordinate: usize| self.line(component.places[coordinate]);
             let kinks = mode.formulas().iter().flat_map(|rate| &rate.kinks);
-            kinks.filter_map(move |kinks| kinks.next(after, line))
+            kinks.filter_map(move |kinks| kinks.next(settled, &motion))
         });
         kinks.reduce(f64::min)
+    }
+
+    /// Holds the sides of kinks that hold at a time, in the state there: the first formula that is on another side
+    /// than before.
+    pub(super) fn choose_sides(&self, time: f64, state: &[f64]) -> Option<&'a Expression> {
+        self.hold.as_ref()?.choose(time, state, &|place| self.line(place))
+    }
+
+    /// Where a variable begins and at what rate it moves, if it moves along a line.
+    fn line(&self, place: usize) -> Option<(f64, f64)> {
+        match self.rows.get(place)? {
+            Row::Line(rate) => Some((self.start[place], *rate)),
+            Row::Curved | Row::Solved => None,
+        }
     }
 
     /// Rates that could grow without bound, with where their variables are.

@@ -1,5 +1,6 @@
-//! Rates with kinks on curves: a solver follows smooth rates, each on the side of every kink that is held,
-//! up to where the state passes a kink.
+//! Rates with kinks: a solver follows smooth rates, each on the side of every kink that is held, up to
+//! where the state passes a kink. Kinks on curves are searched for; of those on lines, such as the points
+//! of a table over time, the instants are known.
 
 use std::cell::{Cell, RefCell};
 use std::convert::Infallible;
@@ -12,6 +13,7 @@ use pleach_guards::{Course, Enclosure, EvaluationError, Expression, Sides, Track
 use super::Component;
 use super::blueprint::{Mode, ModeMotion};
 use super::field::Row;
+use super::kinks::{Kinks, Motion};
 
 /// The sides of kinks in the field of a group.
 pub(super) struct Hold<'a> {
@@ -25,6 +27,9 @@ pub(super) struct Hold<'a> {
 /// What is held of a component.
 struct Part<'a> {
     sides: &'a Sides,
+    /// Where all its kinks are on lines: these. Sides are then chosen right behind an instant, and are held
+    /// whatever else is.
+    known: Option<Vec<&'a Kinks>>,
     /// Where its coordinates are among the values, and where its sides are.
     slots: Vec<usize>,
     /// Where its rates go.
@@ -41,8 +46,8 @@ pub(super) struct Unclear;
 const MOST_SPANS: u64 = 100_000;
 
 impl<'a> Hold<'a> {
-    /// What has to be held of these components, if rates of one of them have kinks that are not known
-    /// beforehand.
+    /// What has to be held of these components: rates with kinks that are not known beforehand, and rates
+    /// that jump.
     pub(super) fn of(moving: &[(&'a Component, &'a Mode)], rows: &[Row]) -> Option<Box<Self>> {
         let mut count = rows.len();
         let mut part = |(component, mode): &(&'a Component, &'a Mode)| {
@@ -51,8 +56,9 @@ impl<'a> Hold<'a> {
             };
             let is_line = |place: usize| matches!(rows[component.places[place]], Row::Line(_));
             let known = rates.iter().flat_map(|rate| &rate.kinks);
-            let known = known.filter(|kinks| kinks.are_known(is_line));
-            if known.count() == sides.kinks() {
+            let known: Vec<_> = known.filter(|kinks| kinks.are_known(is_line)).collect();
+            let known = (known.len() == sides.kinks()).then_some(known);
+            if known.as_ref().is_some_and(|known| !known.iter().any(|kinks| kinks.are_jumps())) {
                 return None;
             }
             let own = count..count + sides.count();
@@ -61,6 +67,7 @@ impl<'a> Hold<'a> {
             places.shrink_to_fit();
             Some(Part {
                 sides,
+                known,
                 slots: component.places.iter().copied().chain(own).collect(),
                 targets: rates.iter().map(|rate| component.places[rate.coordinate]).collect(),
                 room: RefCell::new([Vec::new(), places, vec![0.0; rates.len()]]),
@@ -76,9 +83,14 @@ impl<'a> Hold<'a> {
         Some(Box::new(Hold { parts, values, is_active }))
     }
 
-    /// Whether rates of this moving component are held on one side.
-    pub(super) fn holds(&self, number: usize) -> bool {
-        self.parts[number].is_some()
+    /// Whether kinks of this moving component are searched for.
+    pub(super) fn searches(&self, number: usize) -> bool {
+        self.parts[number].as_ref().is_some_and(Part::is_searched)
+    }
+
+    /// The parts of which kinks are searched for.
+    fn searched(&self) -> impl Iterator<Item = &Part<'a>> {
+        self.parts.iter().flatten().filter(|part| part.is_searched())
     }
 
     /// Whether rates are those of the sides that are held, and not as they are.
@@ -86,17 +98,27 @@ impl<'a> Hold<'a> {
         self.is_active.get()
     }
 
-    /// Holds the sides that hold in a state: the first formula with a kink that is on another side than
-    /// before, if there is one.
-    pub(super) fn choose(&self, state: &[f64]) -> Option<&'a Expression> {
+    /// Holds the sides that hold at a time, in the state there: the first formula with a kink that is on
+    /// another side than before, if there is one. `line` says of variables how they move along lines.
+    pub(super) fn choose(
+        &self,
+        time: f64,
+        state: &[f64],
+        line: Motion<'_>,
+    ) -> Option<&'a Expression> {
         self.is_active.set(true);
         let values = &mut *self.values.borrow_mut();
         values[..state.len()].copy_from_slice(state);
         let mut changed = None;
         for part in self.parts.iter().flatten() {
             let [own, ..] = &mut *part.room.borrow_mut();
+            let behind = part.behind(time, line);
+            let moved = |slot: usize| {
+                let (first, rate) = line(slot)?;
+                Some(first + rate * behind?)
+            };
             own.clear();
-            own.extend(part.slots.iter().map(|&slot| values[slot]));
+            own.extend(part.slots.iter().map(|&slot| moved(slot).unwrap_or(values[slot])));
             changed = changed.or(part.sides.choose(own));
             part.slots.iter().zip(own).for_each(|(&slot, value)| values[slot] = *value);
         }
@@ -110,9 +132,8 @@ impl<'a> Hold<'a> {
 
     /// Writes the rates of a moving component on the sides that are held, if any are.
     pub(super) fn add_rates(&self, number: usize, state: &[f64], rates: &mut [f64]) -> bool {
-        let Some(part) = self.parts[number].as_ref().filter(|_| self.is_active.get()) else {
-            return false;
-        };
+        let is_held = |part: &&Part<'a>| self.is_active.get() || !part.is_searched();
+        let Some(part) = self.parts[number].as_ref().filter(is_held) else { return false };
         let (values, dimension) = (self.values.borrow(), state.len());
         let [own, places, change] = &mut *part.room.borrow_mut();
         own.clear();
@@ -129,6 +150,9 @@ impl<'a> Hold<'a> {
     ///
     /// [`Unclear`] if this cannot be said: a formula has no value, or there are too many kinks.
     pub(super) fn passed(&self, piece: &Piece) -> Result<Option<Onset>, Unclear> {
+        if self.searched().next().is_none() {
+            return Ok(None);
+        }
         let piece = piece.clone().without_errors();
         let mut passage = Passage { hold: self, states: Vec::new() };
         let (search, mut spans) = (EventSearch::default(), MOST_SPANS);
@@ -139,7 +163,7 @@ impl<'a> Hold<'a> {
     /// The spans of a piece of the solution in which its error hides whether the state passes a jump of
     /// the rates: it comes to one and turns.
     pub(super) fn grazes(&self, piece: &Piece) -> Vec<Doubt> {
-        if self.parts.iter().flatten().all(|part| part.sides.jumps().is_none()) {
+        if self.searched().all(|part| part.sides.jumps().is_none()) {
             return Vec::new();
         }
         let mut graze = Graze { hold: self, states: Vec::new() };
@@ -161,12 +185,27 @@ impl<'a> Hold<'a> {
         room.clear();
         room.extend_from_slice(states);
         room.extend(values[states.len()..].iter().map(|side| Enclosure::constant(*side)));
-        self.parts.iter().flatten().fold(Course::Never, |course, part| match of(part.sides) {
+        self.searched().fold(Course::Never, |course, part| match of(part.sides) {
             Some(tracker) => {
                 course.or(tracker.course(room, &part.slots, half_width, 0.0, &|_| None))
             }
             None => course,
         })
+    }
+}
+
+impl Part<'_> {
+    fn is_searched(&self) -> bool {
+        self.known.is_none()
+    }
+
+    /// A time so soon after this one that no instant lies between them, if all instants are known. What
+    /// is within rounding of the time is over.
+    fn behind(&self, time: f64, line: Motion<'_>) -> Option<f64> {
+        let motion = |coordinate: usize| line(self.slots[coordinate]);
+        let rounding = |kinks: &&Kinks| kinks.rounding(time, &motion);
+        let largest = self.known.as_ref()?.iter().map(rounding).fold(0.0, f64::max);
+        Some(time + 2.0 * largest)
     }
 }
 
@@ -182,7 +221,7 @@ impl<'a> Watch for Passage<'_, 'a> {
     fn verdict(&mut self, state: &[f64]) -> Result<Verdict, EvaluationError> {
         let values = &mut *self.hold.values.borrow_mut();
         values[..state.len()].copy_from_slice(state);
-        self.hold.parts.iter().flatten().try_fold(Verdict::NEVER, |verdict, part| {
+        self.hold.searched().try_fold(Verdict::NEVER, |verdict, part| {
             Ok(verdict.or(part.sides.passed().evaluate_at(values, &part.slots)?))
         })
     }

@@ -15,11 +15,16 @@ pub(crate) struct Kinks {
     coefficients: Box<[(usize, f64)]>,
 }
 
-/// A jump lies between two ends of steps that are this far from it, as a part of the numbers that its
-/// time is computed from.
-const BESIDE: f64 = 32.0 * f64::EPSILON;
-/// Times that are nearer to each other, as a part of them, are one.
-const SAME: f64 = 8.0 * f64::EPSILON;
+/// Times that are nearer to each other are one instant, as a part of the numbers that they are computed from.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// How the sum of coordinates moves: where it begins and how fast it rises.
+struct Line {
+    start: f64,
+    speed: f64,
+    /// The size of the numbers that its start is computed from.
+    size: f64,
+}
 
 impl Kinks {
     /// Those of a formula over coordinates of these names.
@@ -87,38 +92,49 @@ impl Kinks {
         self.coefficients.iter().all(|&(coordinate, _)| is_line(coordinate))
     }
 
-    /// The first time after `after` at which a step should end, if coordinates begin and move as `motion`
-    /// says; none if one of them does not move along a line.
-    pub(super) fn next(
-        &self,
-        after: f64,
-        motion: impl Fn(usize) -> Option<(f64, f64)>,
-    ) -> Option<f64> {
-        let (mut start, mut speed, mut size) = (self.constant, 0.0, self.constant.abs());
-        for &(coordinate, coefficient) in &self.coefficients {
-            let (first, rate) = motion(coordinate)?;
-            start += coefficient * first;
-            speed += coefficient * rate;
-            size += (coefficient * first).abs();
-        }
-        if speed == 0.0 {
-            return None;
-        }
-        let rises = speed > 0.0;
-        let here = start + speed * after;
+    /// Whether the rate may jump at one of them.
+    pub(super) fn are_jumps(&self) -> bool {
+        self.are_jumps
+    }
+
+    /// The first instant after `settled` at which a step should end, if coordinates begin and move as
+    /// `motion` says; none if one of them does not move along a line. What is within rounding of
+    /// `settled` happens there.
+    pub(super) fn next(&self, settled: f64, motion: Motion<'_>) -> Option<f64> {
+        let Line { start, speed, .. } = self.line(motion)?;
+        let begin = settled + self.rounding(settled, motion);
+        let (here, rises) = (start + speed * begin, speed > 0.0);
         let passed = self.places.partition_point(|place| *place <= here);
-        // With the last place that was passed, since a step may have to end right behind it.
+        // With one that was passed, as far as rounding tells.
         let count = self.places.len();
         let first = if rises { passed.saturating_sub(1) } else { count - count.min(passed + 1) };
         (first..count).find_map(|number| {
             let place = self.places[if rises { number } else { count - 1 - number }];
-            let time = (place - start) / speed;
-            let numbers = time.abs() + (size + place.abs()) / speed.abs();
-            let beside = if self.are_jumps { BESIDE * numbers } else { 0.0 };
-            [time - beside, time + beside].into_iter().find(|time| *time > after + SAME * after)
+            Some((place - start) / speed).filter(|time| *time > begin)
         })
     }
+
+    /// By how much times around this one may be rounded.
+    pub(super) fn rounding(&self, time: f64, motion: Motion<'_>) -> f64 {
+        let numbers = |line: Line| time.abs() + line.size / line.speed.abs();
+        self.line(motion).map_or(0.0, |line| 2.0 * ROUNDING * numbers(line))
+    }
+
+    /// None if it is none, or rests.
+    fn line(&self, motion: Motion<'_>) -> Option<Line> {
+        let mut line = Line { start: self.constant, speed: 0.0, size: self.constant.abs() };
+        for &(coordinate, coefficient) in &self.coefficients {
+            let (first, rate) = motion(coordinate)?;
+            line.start += coefficient * first;
+            line.speed += coefficient * rate;
+            line.size += (coefficient * first).abs();
+        }
+        Some(line).filter(|line| line.speed != 0.0)
+    }
 }
+
+/// By coordinate, where it begins and how fast it moves, if it moves along a line.
+pub(super) type Motion<'a> = &'a dyn Fn(usize) -> Option<(f64, f64)>;
 
 #[cfg(test)]
 mod tests {
@@ -144,7 +160,7 @@ mod tests {
     fn ends(kinks: &Kinks, motion: [(f64, f64); 2]) -> Vec<f64> {
         let mut ends = Vec::new();
         while let Some(next) =
-            kinks.next(ends.last().copied().unwrap_or(0.0), |at| Some(motion[at]))
+            kinks.next(ends.last().copied().unwrap_or(0.0), &|at| Some(motion[at]))
         {
             ends.push(next);
             assert!(ends.len() < 10, "steps go on");
@@ -175,21 +191,31 @@ mod tests {
 
     /// 2x − 3y + 1 begins at −3 and rises by 1.75 a second.
     #[test]
-    fn steps_end_at_a_kink_and_on_both_sides_of_a_jump() {
+    fn steps_end_at_a_kink_and_at_a_jump() {
         let [x, y] = NAMES.map(variable);
         let line = 2.0 * &x - 3.0 * &y + 1.0;
         let motion = [(1.0, 0.5), (2.0, -0.25)];
-        let (time, size) = (3.0 / 1.75, 9.0);
-        let found = ends(&only(&line.abs()), motion);
-        assert!(matches!(found[..], [end] if (end - time).abs() < 1e-15), "{found:?}");
-        let found = ends(&only(&line.sign()), motion);
-        let [before, after] = found[..] else { panic!("{found:?}") };
-        let beside = BESIDE * (time + size / 1.75);
-        assert!(((before + after) / 2.0 - time).abs() < 1e-15, "{found:?}");
-        assert!(((after - before) / 2.0 / beside - 1.0).abs() < 0.01, "{found:?}");
-        assert!(ends(&only(&line.abs()), [(3.0, 0.5), (2.0, -0.25)]).is_empty(), "it is passed");
-        assert!(ends(&only(&line.abs()), [(1.0, 1.5), (2.0, 1.0)]).is_empty(), "it stands still");
-        assert_eq!(only(&line.abs()).next(0.0, |at| (at == 0).then_some((1.0, 0.5))), None);
+        for formula in [line.abs(), line.sign()] {
+            let found = ends(&only(&formula), motion);
+            assert!(matches!(found[..], [end] if (end - 3.0 / 1.75).abs() < 1e-15), "{found:?}");
+            assert!(ends(&only(&formula), [(3.0, 0.5), (2.0, -0.25)]).is_empty(), "it is passed");
+            assert!(ends(&only(&formula), [(1.0, 1.5), (2.0, 1.0)]).is_empty(), "it stands still");
+            assert_eq!(only(&formula).next(0.0, &|at| (at == 0).then_some((1.0, 0.5))), None);
+        }
+    }
+
+    /// Beside an instant, within its rounding, it is over; and beyond that it is to come.
+    #[test]
+    fn an_instant_within_rounding_is_that_instant() {
+        let jump = only(&(variable("x") - 600.0).sign());
+        for start in [0.0, 1e6, -1e6] {
+            let next = |settled: f64| jump.next(settled, &|_| Some((start, 1.0)));
+            let (time, rounding) = (600.0 - start, jump.rounding(600.0, &|_| Some((start, 1.0))));
+            assert!(rounding < 1e-13 * (start.abs() + 1200.0), "{rounding}");
+            assert_eq!(next(time - 1.5 * rounding), Some(time));
+            assert_eq!(next(time - 0.5 * rounding), None);
+            assert_eq!(next(time), None);
+        }
     }
 
     #[test]

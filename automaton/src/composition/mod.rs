@@ -82,9 +82,11 @@ mod picture;
 mod product;
 mod record;
 mod replay;
+mod sampler;
 mod settings;
 mod simulation;
 mod solver;
+pub mod stream;
 mod tension;
 
 use std::sync::Arc;

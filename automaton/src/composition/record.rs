@@ -17,6 +17,8 @@ pub(super) struct Record {
     strands: Vec<Strand>,
     jumps: Vec<JumpRecord>,
     doubts: Vec<Doubt>,
+    /// Whether doubts alone are kept.
+    is_of_doubts: bool,
     /// About how large it is, in numbers.
     numbers: u64,
 }
@@ -33,7 +35,18 @@ impl Record {
             let stretch = Stretch::at(HybridTime::START, Moment::default(), first);
             Strand { slots, components, stretches: vec![stretch] }
         });
-        Record { strands: strands.collect(), jumps: Vec::new(), doubts: Vec::new(), numbers: 0 }
+        let strands = strands.collect();
+        let (jumps, doubts) = (Vec::new(), Vec::new());
+        Record { strands, jumps, doubts, is_of_doubts: false, numbers: 0 }
+    }
+
+    /// One that keeps doubts alone.
+    pub(super) fn of_doubts(composition: &Composition) -> Record {
+        Record { is_of_doubts: true, ..Record::of(composition) }
+    }
+
+    pub(super) fn into_doubts(self) -> Vec<Doubt> {
+        self.doubts
     }
 
     /// About how large it is, in bytes.
@@ -56,6 +69,9 @@ impl Record {
         }
         for &why in &flight.unknowns {
             doubt(flight.since.seconds(), flight.due().seconds(), why);
+        }
+        if self.is_of_doubts {
+            return;
         }
         let Some(mut stretch) = stretches.pop() else { return };
         if !stretch.pieces.is_empty() {
@@ -82,6 +98,9 @@ impl Record {
         group: &Group,
         values: &[f64],
     ) {
+        if self.is_of_doubts {
+            return;
+        }
         let first = values_of(group, values);
         self.numbers += first.len() as u64 + OVERHEAD;
         let since = Moment::from(at.t);

@@ -4,6 +4,7 @@ mod failure;
 mod flights;
 mod rounds;
 mod run;
+mod sliding;
 
 use std::collections::BTreeSet;
 
@@ -69,8 +70,8 @@ pub struct Simulation<'a> {
     /// By component: the number of the round in which it has jumped last.
     jumped: Vec<u64>,
     round: u64,
-    /// What was done in the last two jumps, by the first who took part.
-    latest: [Option<Move>; 2],
+    /// The group that has jumped last.
+    latest: usize,
     /// How many more pieces and spans may be looked at.
     steps: u64,
     record: Option<Record>,
@@ -89,6 +90,10 @@ struct GroupState {
     /// Whether no time can pass, because an invariant has ended the last flow and nothing was taken since.
     must_leave: bool,
     zeno: ZenoDetector,
+    /// What was done in the last two jumps, by the first who took part.
+    latest: [Option<Move>; 2],
+    /// How many jumps in a row have gone to and fro over a boundary, for rounding alone.
+    chattering: u32,
     /// How long the last flight was, in seconds; infinite before the first.
     last: f64,
     /// What is known of its linear flows.
@@ -141,6 +146,8 @@ impl<'a> Simulation<'a> {
             allowance: 0.0,
             must_leave: false,
             zeno: ZenoDetector::new(horizon),
+            latest: [None; 2],
+            chattering: 0,
             last: f64::INFINITY,
             linear: LinearFlows::default(),
         };
@@ -157,7 +164,7 @@ impl<'a> Simulation<'a> {
             awake: (0..composition.groups.len()).collect(),
             jumped: vec![0; composition.components.len()],
             round: 0,
-            latest: [None; 2],
+            latest: 0,
             steps: settings.step_limit,
             record: None,
         })
@@ -168,16 +175,35 @@ impl<'a> Simulation<'a> {
         &self.locations
     }
 
+    pub(super) fn composition(&self) -> &'a Composition {
+        self.composition
+    }
+
     /// The values of the variables now.
     pub fn values(&self) -> Vec<f64> {
+        self.values_at(self.now)
+    }
+
+    /// The values at a moment from now on, up to the end of the first flight.
+    pub(super) fn values_at(&self, moment: Moment) -> Vec<f64> {
         let mut values = self.values.clone();
         for (state, group) in self.groups.iter().zip(&self.composition.groups) {
             if let Some(flight) = &state.flight {
-                let now = flight.state_at((self.now - flight.since).seconds());
+                let now = match moment >= flight.due() {
+                    true => flight.landing.clone(),
+                    false => flight.state_at((moment - flight.since).seconds()),
+                };
                 group.slots.iter().zip(now).for_each(|(&slot, value)| values[slot] = value);
             }
         }
         values
+    }
+
+    /// When a flow of this duration from now on ends: exactly where a flight does, if it is meant.
+    pub(super) fn end_of(&self, duration: f64) -> Moment {
+        let first = self.queue.first().map(|due| due.at);
+        let planned = first.filter(|at| (*at - self.now).seconds() == duration);
+        planned.unwrap_or(self.now + Moment::from(duration))
     }
 
     fn hybrid_time(&self) -> HybridTime {
@@ -246,9 +272,7 @@ impl System for Simulation<'_> {
     }
 
     fn flow(&mut self, duration: f64) -> Result<(), Halt> {
-        let first = self.queue.first().map(|due| due.at);
-        let planned = first.filter(|at| (*at - self.now).seconds() == duration);
-        self.now = planned.unwrap_or(self.now + Moment::from(duration));
+        self.now = self.end_of(duration);
         while let Some(due) = self.queue.first().copied().filter(|due| due.at <= self.now) {
             self.queue.pop_first();
             self.land(due.group)?;

@@ -41,6 +41,8 @@ pub(super) struct Solver<'a> {
     /// How far it is solved.
     reached: f64,
     crawled: u32,
+    /// The time up to which kinks at known instants are passed.
+    settled: f64,
     /// The formula with the kink at which the last piece ends, if it ends at one.
     kink: Option<&'a Expression>,
     /// Where the solution touches a jump of its rates, for all that is known.
@@ -76,9 +78,7 @@ impl<'a> Solver<'a> {
                 Method::Linear(LinearFlow::of(&linear, &start, limit)?, variables)
             }
             None => {
-                if let Some(hold) = field.hold() {
-                    hold.choose(&field.start);
-                }
+                field.choose_sides(0.0, &field.start);
                 let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
                 Method::Steps(Box::new(integrator.with_method(settings.method)))
             }
@@ -93,6 +93,7 @@ impl<'a> Solver<'a> {
             size: 0,
             reached: 0.0,
             crawled: 0,
+            settled: 0.0,
             kink: None,
             grazes: Vec::new(),
             enclosures: Vec::new(),
@@ -202,6 +203,9 @@ impl<'a> Solver<'a> {
         let bounded = self.check_rates(&piece).and_then(|()| self.check_radicands(&piece));
         let end = bounded.as_ref().err().map_or(piece.end(), |(singularity, _)| *singularity);
         let progress = self.check_progress(&piece);
+        if self.field.next_kink(self.settled) == Some(piece.end()) {
+            self.begin_sides(&piece, piece.end());
+        }
         if end > start {
             self.reached = end;
             self.size += piece.numbers();
@@ -220,7 +224,8 @@ impl<'a> Solver<'a> {
                 flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
             }
             Method::Steps(integrator) => {
-                let limit = self.field.next_kink(start).map_or(limit, |kink| limit.min(kink));
+                let limit =
+                    self.field.next_kink(self.settled).map_or(limit, |kink| limit.min(kink));
                 let step = integrator.step(limit).map_err(|fault| without_time(&fault))?;
                 step.piece(start).ok_or("the flow has no solution")?
             }
@@ -278,7 +283,7 @@ impl<'a> Solver<'a> {
         }
         let piece = self.next_piece(limit)?;
         // Beyond the kink, sides can be held again.
-        if self.begin_sides(hold, &piece, piece.end()).is_none() {
+        if self.begin_sides(&piece, piece.end()).is_none() {
             hold.release();
         }
         Ok(piece)
@@ -303,7 +308,7 @@ impl<'a> Solver<'a> {
             Ok(Some(Onset { time, .. })) => {
                 let up_to = piece.clone().within(0.0, time);
                 let grazes = hold.grazes(&up_to);
-                let kink = self.begin_sides(hold, &piece, time);
+                let kink = self.begin_sides(&piece, time);
                 if kink.is_none() {
                     self.integrator()?.undo();
                     return None;
@@ -322,10 +327,11 @@ impl<'a> Solver<'a> {
     }
 
     /// Goes on from a time of a piece with the sides that hold there: the first kink that was passed.
-    fn begin_sides(&mut self, hold: &Hold<'a>, piece: &Piece, time: f64) -> Option<&'a Expression> {
+    fn begin_sides(&mut self, piece: &Piece, time: f64) -> Option<&'a Expression> {
+        self.settled = time;
         let mut state = self.field.start.clone();
         piece.state_at(time, &mut state);
-        let kink = hold.choose(&state)?;
+        let kink = self.field.choose_sides(time, &state)?;
         self.integrator()?.restart(time, &state);
         Some(kink)
     }

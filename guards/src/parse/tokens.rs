@@ -115,17 +115,22 @@ impl<'a> Scanner<'a> {
             '∨' => Token::Or,
             QUOTE => Token::Quoted(self.quoted()?),
             RAISED_MINUS => self.raised(String::from("-"))?,
-            first if first.is_ascii_digit() => self.number(first)?,
+            first if first.is_ascii_digit() || self.begins_fraction(first) => self.number(first)?,
             first if RAISED_DIGITS.contains(&first) => self.raised(raised_digit(first))?,
             first if name::begins(first) => self.word(first),
             _ => return Err("a number, a name, an operator or a parenthesis"),
         })
     }
 
+    /// Whether a dot is followed by digits: `.5` is 0.5.
+    fn begins_fraction(&mut self, first: char) -> bool {
+        first == '.' && self.letters.peek().is_some_and(|(_, letter)| letter.is_ascii_digit())
+    }
+
     fn number(&mut self, first: char) -> Result<Token, &'static str> {
         let mut digits = String::from(first);
         digits += &self.take_while(|letter| letter.is_ascii_digit());
-        if self.take_if('.') {
+        if first != '.' && self.take_if('.') {
             digits.push('.');
             digits += &self.take_while(|letter| letter.is_ascii_digit());
         }

@@ -16,9 +16,9 @@ const CHILDREN: [(&str, &[&str]); 6] = [
     ("bind", &["map", "note"]),
 ];
 
-/// How an arrow is drawn, which says nothing of the model.
-const DRAWN: [&str; 5] =
-    ["labelposition", "middlepoint", "waypoints", "beforemiddle", "aftermiddle"];
+/// How an arrow is drawn, or what editors note, which says nothing of the model.
+const DRAWN: [&str; 6] =
+    ["labelposition", "middlepoint", "waypoints", "beforemiddle", "aftermiddle", "link"];
 
 /// What a location or a transition has one of.
 const SINGLE: [&str; 5] = ["invariant", "flow", "label", "guard", "assignment"];
@@ -82,6 +82,8 @@ struct Element {
     line: usize,
     /// What it has had one of.
     had: Vec<String>,
+    /// The text before it in the element around it.
+    before: String,
 }
 
 /// The attributes of an element.
@@ -127,7 +129,6 @@ impl Document {
     }
 
     fn open(&mut self, element: &BytesStart<'_>) -> Result<(), SpaceExError> {
-        self.content.clear();
         let name = element.name().as_ref().to_owned();
         let opened = self.enter(&name).and_then(|()| self.add(&name, &Attributes(element)));
         opened.map_err(|problem| self.wrong(problem))
@@ -153,7 +154,8 @@ impl Document {
             }
             outer.had.push(name.to_owned());
         }
-        self.open.push(Element { name: name.to_owned(), line: self.line, had: Vec::new() });
+        let before = std::mem::take(&mut self.content);
+        self.open.push(Element { name: name.to_owned(), line: self.line, had: Vec::new(), before });
         Ok(())
     }
 
@@ -200,9 +202,9 @@ impl Document {
     /// Closes the innermost element, and keeps its text.
     fn close(&mut self) -> Result<(), SpaceExError> {
         let content = std::mem::take(&mut self.content);
-        let (Some(element), Some(component)) = (self.open.pop(), self.components.last_mut()) else {
-            return Ok(());
-        };
+        let Some(element) = self.open.pop() else { return Ok(()) };
+        self.content.clone_from(&element.before);
+        let Some(component) = self.components.last_mut() else { return Ok(()) };
         let location = component.locations.last_mut();
         let transition = component.transitions.last_mut();
         let text = Text { line: element.line, content };

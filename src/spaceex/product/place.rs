@@ -9,6 +9,11 @@ use crate::guards::{Expression, Predicate};
 use crate::spaceex::SpaceExError;
 use crate::spaceex::formula::{Clause, Side};
 
+/// Whether both sides are the same.
+fn is_identity(clause: &Clause) -> bool {
+    matches!(clause, Clause::Compare { left, right, .. } if left == right)
+}
+
 impl Product<'_> {
     /// Adds a location with the rates and invariants of its parts.
     pub(super) fn add_location(
@@ -39,8 +44,8 @@ impl Product<'_> {
                 _ => rates = None,
             }
             for clause in instance.clauses(&place.invariant)? {
-                // Bounds on inputs say what inputs are.
-                if !self.is_input_bound(&clause) {
+                // Bounds on inputs say what inputs are, and outputs are what they are.
+                if !self.is_input_bound(&clause) && !is_identity(&clause) {
                     let wrong =
                         |problem| SpaceExError::Model { line: place.invariant.line, problem };
                     invariant.extend(predicate(&clause).map_err(wrong)?);

@@ -5,13 +5,23 @@ use crate::composition::blueprint::{Change, Mode, ModeMotion};
 use crate::composition::{Component, Composition, Label};
 
 impl CompositionBuilder {
+    /// Turns clocks that sample into components.
+    pub(super) fn join_samplers(mut self) -> Result<Self, CompositionError> {
+        for sampler in std::mem::take(&mut self.samplers) {
+            let (label, sampled) = self.end_of_channel(&sampler.event, None)?;
+            self.parts[sampled].check_receptive(&label)?;
+            self = sampler.join(self, &label)?;
+        }
+        Ok(self)
+    }
+
     /// Turns channels into components.
     pub(super) fn join_channels(mut self) -> Result<Self, CompositionError> {
         let mut heard: Vec<String> = Vec::new();
         for channel in std::mem::take(&mut self.channels) {
             let (send, _) = self.end_of_channel(&channel.output, None)?;
             let shared = (channel.inputs.len() > 1).then(|| channel.name.clone());
-            let mut arrive = String::new();
+            let mut arrive = format!("{} arrival", channel.name);
             for input in &channel.inputs {
                 if heard.contains(input) {
                     return Err(CompositionError::HeardTwice { event: input.clone() });
@@ -22,6 +32,9 @@ impl CompositionBuilder {
                     self.parts[receiver].check_receptive(&arrive)?;
                 }
                 heard.push(input.clone());
+            }
+            for input in channel.carried() {
+                self.check_arrivals(input, &arrive)?;
             }
             self = channel.join(self, &send, &arrive)?;
         }
@@ -55,6 +68,19 @@ impl CompositionBuilder {
             return Ok((label.to_owned(), number));
         }
         Err(CompositionError::UnknownMessage { event: event.to_owned() })
+    }
+
+    /// A coordinate that a channel carries is read in the jump of an arrival alone.
+    fn check_arrivals(&self, input: &str, arrive: &str) -> Result<(), CompositionError> {
+        for part in &self.parts {
+            let own = input.strip_prefix(&*part.name).and_then(|it| it.strip_prefix('.'));
+            let Some(coordinate) = own else { continue };
+            if let Some(reader) = part.model.reader_of(coordinate, part.event(arrive)) {
+                let (component, coordinate) = (part.name.clone(), coordinate.to_owned());
+                return Err(CompositionError::InTransit { component, coordinate, reader });
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn check_names(&self) -> Result<(), CompositionError> {

@@ -77,6 +77,27 @@ pub enum CompositionError {
         /// What stands against it.
         reason: &'static str,
     },
+    /// An event cannot be taken at even intervals.
+    #[error("`{event}` cannot be sampled: {reason}")]
+    Sampler {
+        /// The event.
+        event: String,
+        /// What is wrong with the period or the phase.
+        reason: &'static str,
+    },
+    /// What a channel carries is read elsewhere than in the jump in which it arrives.
+    #[error(
+        "component `{component}` reads `{coordinate}` in {reader}, where the message may be under way: \
+         read it in the jump of its arrival, or let the channel hold it, with `Channel::held`"
+    )]
+    InTransit {
+        /// The component.
+        component: String,
+        /// The coordinate.
+        coordinate: String,
+        /// What reads it.
+        reader: String,
+    },
     /// A component changes what it only reads.
     #[error(
         "component `{component}` changes `{coordinate}` in location `{location}`, but reads it \

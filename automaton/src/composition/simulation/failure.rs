@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::composition::CompositionError;
-use crate::executor::{InvalidLimit, Limit, Reason};
+use crate::executor::{InvalidLimit, Limit, Reason, Sliding};
 use crate::zeno::Zeno;
 
 /// Why a simulation cannot begin.
@@ -72,6 +72,9 @@ pub enum Halt {
     /// It has used up what it may.
     #[error(transparent)]
     Limit(#[from] Limit),
+    /// Two flows lead to the boundary between them.
+    #[error("the flows of two locations lead to the boundary between them")]
+    Sliding(Sliding),
     /// Jumps accumulate.
     #[error("jumps accumulate at {} s", .0.accumulation)]
     Zeno(Zeno),
@@ -82,6 +85,7 @@ impl From<Halt> for Reason<Failure> {
         match halt {
             Halt::Failure(failure) => Reason::Finished(failure),
             Halt::Limit(limit) => Reason::Limit(limit),
+            Halt::Sliding(sliding) => Reason::Sliding(sliding),
             Halt::Zeno(zeno) => Reason::Zeno(zeno),
         }
     }

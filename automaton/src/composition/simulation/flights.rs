@@ -1,24 +1,19 @@
 //! Flights of groups: planned, ended, and what comes of them.
 
-use pleach_continuous::flow::VectorField;
-use pleach_guards::{Enclosure, Interval, Verdict};
+use pleach_guards::Verdict;
 
-use super::{Due, Failure, Halt, Move, Simulation};
-use crate::composition::blueprint::Condition;
+use super::{Due, Failure, Halt, Simulation};
 use crate::composition::field::Field;
 use crate::composition::flight::{Flight, Plan};
 use crate::composition::jumps::Standing;
 use crate::composition::tension::{Conditions, Readiness};
 use crate::composition::{Accumulation, Policy};
-use crate::executor::Sliding;
 use crate::moment::Moment;
 use crate::zeno::{Zeno, ZenoDetector};
 
 /// The largest part of the state by which a landing may be outside an invariant. Margins of smooth
 /// guards stay far below it; those that are only signs are not believed.
 const LARGEST_ALLOWANCE: f64 = 1e-9;
-/// By how much two shares of one mixture of flows may differ, as they are rounded.
-const SHARE_TOLERANCE: f64 = 1e-6;
 
 impl<'a> Simulation<'a> {
     /// Plans the flow of a group from here on, unless that is done.
@@ -149,51 +144,6 @@ impl<'a> Simulation<'a> {
         let parts = &self.composition.groups[group];
         let start = parts.slots.iter().map(|&slot| self.values[slot]).collect();
         Field::of(self.composition, parts, locations, start)
-    }
-
-    /// Whether the last two jumps go back and forth over one boundary to which the flows of both
-    /// sides lead.
-    pub(super) fn sliding(&self) -> Option<Sliding> {
-        let [Some(there), Some(back)] = self.latest else { return None };
-        let returns = (there.source, there.target) == (back.target, back.source);
-        if there.component != back.component || !returns || there.source == there.target {
-            return None;
-        }
-        let component = &self.composition.components[there.component];
-        let guard_of = |one: &Move| &component.mode(one.source).leaving[one.transition].guard;
-        let margins = |guard: &Condition, location: usize| -> Vec<f64> {
-            let mut locations = self.locations.clone();
-            locations[there.component] = location;
-            let field = self.field(component.group, &locations);
-            let mut rates = vec![0.0; field.start.len()];
-            field.rates(0.0, &field.start, &mut rates);
-            let point = |(value, rate): (&f64, &f64)| {
-                let value = Interval::point(*value);
-                Enclosure { middle: value, range: value, rate: Interval::point(*rate) }
-            };
-            let states: Vec<Enclosure> = field.start.iter().zip(&rates).map(point).collect();
-            let comparisons = guard.tracker.comparisons().iter();
-            comparisons
-                .map(|one| one.margin(&states, &component.places, 0.0).rate.midpoint())
-                .collect()
-        };
-        // For each boundary that a jump crosses and both flows lead to: the share of the flow beyond
-        // it in the mixture that stays on it.
-        let shares = |one: &Move| -> Vec<f64> {
-            let guard = guard_of(one);
-            let sides = margins(guard, one.source).into_iter().zip(margins(guard, one.target));
-            let met = sides.filter(|(here, beyond)| *here > 0.0 && *beyond < 0.0);
-            met.map(|(here, beyond)| here / (here - beyond)).collect()
-        };
-        // Where the jump back crosses another boundary, the mixture that stays on the one leaves the other. Where it
-        // crosses none to which both flows lead, only the first counts.
-        let returning = shares(&back);
-        let is_one = |share: &f64| {
-            returning.is_empty()
-                || returning.iter().any(|back| (share + back - 1.0).abs() < SHARE_TOLERANCE)
-        };
-        let share = shares(&there).into_iter().find(is_one)?;
-        Some(Sliding { component: there.component, locations: [there.source, there.target], share })
     }
 
     /// Whether the group is outside an invariant, by however little.

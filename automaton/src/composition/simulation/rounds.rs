@@ -146,7 +146,9 @@ impl Simulation<'_> {
             self.jumped[one.component] = self.round;
         }
         self.jumps += 1;
-        self.latest = [self.latest[1], taken.moves.first().copied()];
+        self.latest = group;
+        let latest = &mut self.groups[group].latest;
+        *latest = [latest[1], taken.moves.first().copied()];
         // What was planned was planned for other locations.
         self.ground(group);
         self.groups[group].is_eager = false;
@@ -170,7 +172,7 @@ impl Simulation<'_> {
             all if all.len() == self.locations.len() => round.jumped_together(taken),
             _ => round.jumped_some(participants, taken),
         }
-        Ok(())
+        self.watch_chattering(group)
     }
 
     pub(super) fn standing(&self) -> Standing<'_> {

@@ -5,9 +5,10 @@ use pleach_discrete::{Event, Location};
 use super::{Failure, Simulation, SimulationError};
 use crate::automaton::Automaton;
 use crate::composition::record::Record;
+use crate::composition::stream::Finish;
 use crate::composition::{Composition, Settings};
 use crate::coordinates::Coordinates;
-use crate::executor::{Ending, Executor, Reason};
+use crate::executor::{Ending, Executor, Observer, Reason};
 use crate::time::HybridTime;
 use crate::trajectory::Trajectory;
 
@@ -65,29 +66,53 @@ impl Composition {
         settings: Settings,
         horizon: f64,
     ) -> Result<Trajectory, SimulationError> {
-        let executor = Executor::new(horizon, settings.round_limit)?.without_zeno_detection();
         let mut simulation = Simulation::new(self, settings, horizon)?;
         simulation.record = Some(Record::of(self));
-        let ending = match executor.run(&mut simulation, &mut ()) {
+        let ending = simulation.run(&mut ())?;
+        Ok(simulation.into_trajectory(ending))
+    }
+}
+
+impl<'a> Simulation<'a> {
+    /// The same with a record of doubts alone.
+    pub(in crate::composition) fn unrecorded(mut self) -> Self {
+        self.record = Some(Record::of_doubts(self.composition));
+        self
+    }
+
+    /// Runs to the end, and says where it is.
+    pub(in crate::composition) fn finish(
+        mut self,
+        observer: &mut impl Observer<Self>,
+    ) -> Result<Finish, SimulationError> {
+        let ending = self.run(observer)?;
+        let values = self.values();
+        let doubts = self.record.take().map(Record::into_doubts).unwrap_or_default();
+        Ok(Finish { ending, values, locations: self.locations, doubts })
+    }
+
+    fn run(
+        &mut self,
+        observer: &mut impl Observer<Self>,
+    ) -> Result<Ending<Failure>, SimulationError> {
+        let executor = Executor::new(self.horizon, self.settings.round_limit)?;
+        Ok(match executor.without_zeno_detection().run(self, observer) {
             Ok(Ending { at, reason }) => {
                 let reason = match reason.without_finish() {
                     Reason::JumpLimit => {
-                        simulation.sliding().map_or(Reason::JumpLimit, Reason::Sliding)
+                        self.sliding(self.latest).map_or(Reason::JumpLimit, Reason::Sliding)
                     }
                     Reason::Blocked if at == HybridTime::START => {
-                        simulation.begins_outside().map_or(Reason::Blocked, Reason::Finished)
+                        self.begins_outside().map_or(Reason::Blocked, Reason::Finished)
                     }
                     reason => reason,
                 };
                 Ending { at, reason }
             }
-            Err(halt) => Ending { at: simulation.hybrid_time(), reason: halt.into() },
-        };
-        Ok(simulation.into_trajectory(ending))
+            Err(halt) => Ending { at: self.hybrid_time(), reason: halt.into() },
+        })
     }
-}
 
-impl Simulation<'_> {
     /// The first component that is outside the invariant of its location, as the reason why nothing goes on.
     fn begins_outside(&self) -> Option<Failure> {
         self.composition.components.iter().zip(&self.locations).find_map(|(component, location)| {

@@ -1,0 +1,143 @@
+//! Observers that keep or write what they see.
+
+use std::io::{self, Write};
+
+use super::{Flowing, Jumping, RunObserver};
+
+/// The times 0, `period`, 2 `period`, … that have not come yet.
+struct Grid {
+    period: f64,
+    next: u64,
+}
+
+impl Grid {
+    fn every(period: f64) -> Self {
+        Grid { period: if period > 0.0 { period } else { f64::INFINITY }, next: 0 }
+    }
+
+    /// The next of them, if it is not after `until`.
+    fn up_to(&mut self, until: f64) -> Option<f64> {
+        let time = if self.next == 0 { 0.0 } else { self.next as f64 * self.period };
+        (time <= until).then(|| {
+            self.next += 1;
+            time
+        })
+    }
+}
+
+/// Keeps the values on a grid of times. Where a time is that of a jump, they are those before it, x⁻.
+pub struct Samples {
+    grid: Grid,
+    rows: Vec<(f64, Vec<f64>)>,
+}
+
+impl Samples {
+    /// At 0, `period` > 0, 2 `period`, … seconds.
+    pub fn every(period: f64) -> Self {
+        Samples { grid: Grid::every(period), rows: Vec::new() }
+    }
+
+    /// The times, each with the values of the variables.
+    pub fn rows(&self) -> &[(f64, Vec<f64>)] {
+        &self.rows
+    }
+}
+
+impl RunObserver for Samples {
+    fn flows(&mut self, flow: &Flowing<'_>) {
+        while let Some(t) = self.grid.up_to(flow.until) {
+            self.rows.push((t, flow.values_at(t)));
+        }
+    }
+}
+
+/// Writes a run as CSV: the time t, the number j of jumps, the components and the event of a jump, and all
+/// variables. There is a row for each time of a grid, and one for each side of a jump; the second of these
+/// has the event.
+pub struct CsvLog<W> {
+    grid: Grid,
+    writer: W,
+    has_begun: bool,
+    /// The first that failed.
+    fault: Option<io::Error>,
+}
+
+impl<W: Write> CsvLog<W> {
+    /// With a row every `period` seconds, besides jumps; with an infinite period for jumps alone. Numbers
+    /// are written one by one: hand in a buffered writer.
+    pub fn every(period: f64, writer: W) -> Self {
+        CsvLog { grid: Grid::every(period), writer, has_begun: false, fault: None }
+    }
+
+    /// The writer, when all is written.
+    ///
+    /// # Errors
+    ///
+    /// The first error of the writer.
+    pub fn finish(mut self) -> io::Result<W> {
+        match self.fault.take() {
+            Some(fault) => Err(fault),
+            None => self.writer.flush().map(|()| self.writer),
+        }
+    }
+
+    fn begin(&mut self, variables: &[String]) -> io::Result<()> {
+        if std::mem::replace(&mut self.has_begun, true) {
+            return Ok(());
+        }
+        write!(self.writer, "t,j,component,event")?;
+        for variable in variables {
+            write!(self.writer, ",{}", quoted(variable))?;
+        }
+        writeln!(self.writer)
+    }
+
+    fn row(&mut self, t: f64, j: u32, what: [&str; 2], values: &[f64]) -> io::Result<()> {
+        write!(self.writer, "{t},{j},{},{}", quoted(what[0]), quoted(what[1]))?;
+        for value in values {
+            write!(self.writer, ",{value}")?;
+        }
+        writeln!(self.writer)
+    }
+
+    fn flow(&mut self, flow: &Flowing<'_>) -> io::Result<()> {
+        self.begin(flow.variables())?;
+        while let Some(t) = self.grid.up_to(flow.until) {
+            self.row(t, flow.from.j, [""; 2], &flow.values_at(t))?;
+        }
+        Ok(())
+    }
+
+    fn jump(&mut self, jump: &Jumping<'_>) -> io::Result<()> {
+        self.begin(jump.variables())?;
+        let components = jump.components().collect::<Vec<_>>().join(" ");
+        self.row(jump.at.t, jump.at.j, [""; 2], jump.before)?;
+        let after = jump.at.after_jump();
+        self.row(after.t, after.j, [&components, jump.label], jump.after)
+    }
+
+    /// Does what can fail, unless something has failed before.
+    fn attempt(&mut self, write: impl FnOnce(&mut Self) -> io::Result<()>) {
+        if self.fault.is_none() {
+            self.fault = write(self).err();
+        }
+    }
+}
+
+impl<W: Write> RunObserver for CsvLog<W> {
+    fn flows(&mut self, flow: &Flowing<'_>) {
+        self.attempt(|log| log.flow(flow));
+    }
+
+    fn jumps(&mut self, jump: &Jumping<'_>) {
+        self.attempt(|log| log.jump(jump));
+    }
+}
+
+/// A field of a row, in quotation marks where it needs them (RFC 4180).
+fn quoted(field: &str) -> String {
+    match field.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", field.replace('"', "\"\"")),
+        false => field.to_owned(),
+    }
+}

@@ -1,0 +1,195 @@
+//! Sampled and delayed loops: clocks that sample, channels that hold what arrived last, and load
+//! profiles, against solutions that are worked out step by step.
+
+use pleach_automaton::composition::Channel;
+use pleach_automaton::{Automaton, Composition, CompositionError, Reason, coordinates, from};
+use pleach_discrete::vocabulary;
+use pleach_guards::{Table, always};
+
+vocabulary! {
+    enum Place: Location { Running = "running" }
+    enum Cue: Event { Sample = "sample" }
+    enum Arrival: Event { Hear = "hear" }
+}
+coordinates! {
+    struct Plant { temperature = "T", voltage = "u", time = "t" }
+    struct Controller { measured = "T", integral = "I", output = "u" }
+    struct Counter { count = "n" }
+    struct Sum { total = "x", rate = "r" }
+}
+use {Arrival::Hear, Cue::Sample, Place::Running};
+
+const PERIOD: f64 = 0.01;
+const DELAY: f64 = 0.025;
+const LAG: f64 = 0.5;
+const GAINS: [f64; 3] = [4.0, 6.0, 2.0];
+const TARGET: f64 = 3.0;
+const LOADS: [(f64, f64); 4] = [(0.0, 0.0), (1.0, -2.0), (1.5, 40.0), (2.003, 0.5)];
+
+/// A heater with a lag and a load, and a PI controller that is sampled, saturates, and unwinds its
+/// integral by what saturation cuts off.
+fn heated_room() -> Composition {
+    let Plant { temperature, voltage, time } = Plant::coordinates();
+    let load = Table::steps(LOADS).expect("in order").at(&time);
+    let plant = Automaton::<_, Cue, _>::starting_in(Running)
+        .initially(Plant { temperature: 0.0, voltage: 0.0, time: 0.0 })
+        .flow(Running, [temperature.rate((&voltage + load - &temperature) / LAG), time.rate(1)])
+        .build()
+        .expect("the plant is sound");
+    let Controller { measured, integral, output } = Controller::coordinates();
+    let [proportional, integrating, unwinding] = GAINS;
+    let error = TARGET - &measured;
+    let wanted = proportional * &error + &integral;
+    let possible = wanted.max(0.0).min(10.0);
+    let cut = unwinding * (&possible - &wanted);
+    let controller = Automaton::starting_in(Running)
+        .initially(Controller { measured: 0.0, integral: 0.0, output: 0.0 })
+        .transition(from(Running).on(Sample).to(Running).may(always()).then([
+            output.becomes(possible),
+            integral.becomes(&integral + PERIOD * (integrating * error + cut)),
+        ]))
+        .build()
+        .expect("the controller is sound");
+    Composition::builder()
+        .add("plant", &plant)
+        .add("pi", &controller)
+        .connect("plant.T", "pi.T")
+        .every("pi.sample", PERIOD)
+        .channel(
+            Channel::holding_last("pi.sample")
+                .held("pi.u", "plant.u", 0.0)
+                .taking(DELAY, DELAY)
+                .holding(3),
+        )
+        .build()
+        .expect("they fit together")
+}
+
+/// The temperature at the samples, from the exact solution between any two changes of its rate.
+fn exact(samples: usize) -> Vec<f64> {
+    let ([proportional, integrating, unwinding], mut integral, mut output) = (GAINS, 0.0, 0.0);
+    let (mut x, mut now, mut found) = (0.0, 0.0, Vec::new());
+    // What is sent, and when it arrives.
+    let mut sent: Vec<(f64, f64)> = vec![(0.0, 0.0)];
+    for number in 0..samples {
+        let sample = number as f64 * PERIOD;
+        let mut changes: Vec<f64> = sent.iter().map(|one| one.0).collect();
+        changes.extend(LOADS.iter().map(|one| one.0));
+        changes.retain(|time| now < *time && *time < sample);
+        changes.sort_by(f64::total_cmp);
+        changes.push(sample);
+        for end in changes {
+            let latest = |steps: &[(f64, f64)]| {
+                let begun = steps.iter().rev().find(|step| step.0 <= now + 1e-12);
+                begun.map_or(0.0, |step| step.1)
+            };
+            let rest = latest(&sent) + latest(&LOADS);
+            x = rest + (x - rest) * (-(end - now) / LAG).exp();
+            now = end;
+        }
+        found.push(x);
+        // What goes out at a sample was worked out at the one before.
+        sent.push((sample + DELAY, output));
+        let error = TARGET - x;
+        let wanted: f64 = proportional * error + integral;
+        output = wanted.clamp(0.0, 10.0);
+        integral += PERIOD * (integrating * error + unwinding * (output - wanted));
+    }
+    found
+}
+
+#[test]
+fn a_sampled_loop_with_delay_saturation_and_load_is_exact() {
+    let room = heated_room();
+    let trajectory = room.run(4.0).expect("it runs");
+    assert_eq!(trajectory.ending().reason, Reason::Horizon);
+    let exact = exact(400);
+    let peak = exact.iter().copied().fold(0.0, f64::max);
+    assert!(peak > 10.0, "the load saturates the controller: {peak}");
+    for (number, exact) in exact.into_iter().enumerate() {
+        let found = trajectory.value("plant.T", number as f64 * PERIOD).expect("it lasts");
+        assert!((found - exact).abs() < 1e-8, "{found} is not {exact} at sample {number}");
+    }
+}
+
+/// A counter that is sampled, and one that adds up what it hears of it a quarter of a second later.
+fn counted(channel: Channel) -> Result<Composition, CompositionError> {
+    let Counter { count } = Counter::coordinates();
+    let counter = Automaton::starting_in(Running)
+        .initially(Counter { count: 0.0 })
+        .transition(
+            from(Running).on(Sample).to(Running).may(always()).then(count.becomes(&count + 1)),
+        )
+        .build()
+        .expect("it is sound");
+    let Sum { total, rate } = Sum::coordinates();
+    let sum = Automaton::starting_in(Running)
+        .initially(Sum { total: 0.0, rate: 0.0 })
+        .flow(Running, total.rate(&rate))
+        .transition(from(Running).on(Hear).to(Running).may(always()))
+        .build()
+        .expect("it is sound");
+    Composition::builder()
+        .add("counter", &counter)
+        .add("sum", &sum)
+        .every("counter.sample", 1.0)
+        .channel(channel.taking(0.25, 0.25))
+        .build()
+}
+
+/// 7 up to the first arrival, then 0, 1, 2, …, each for a second from a quarter on.
+#[test]
+fn a_channel_holds_what_arrived_last() {
+    let alone = Channel::holding_last("counter.sample");
+    let heard = Channel::new("counter.sample", "sum.hear");
+    for channel in [alone, heard] {
+        let both = counted(channel.held("counter.n", "sum.r", 7.0)).expect("they fit together");
+        let trajectory = both.run(3.0).expect("it runs");
+        let total = |t: f64| trajectory.value("sum.x", t).expect("it lasts");
+        assert!((total(0.25) - 1.75).abs() < 1e-12);
+        assert!((total(1.25) - 1.75).abs() < 1e-12);
+        assert!((total(3.0) - 4.25).abs() < 1e-12, "{}", total(3.0));
+    }
+}
+
+#[test]
+fn what_is_under_way_cannot_be_read() {
+    let heard = Channel::new("counter.sample", "sum.hear").carrying("counter.n", "sum.r");
+    let fault = counted(heard).err().expect("it is read in a flow");
+    assert!(matches!(fault, CompositionError::InTransit { .. }), "{fault}");
+    let text = fault.to_string();
+    for part in ["`sum`", "`r`", "the flow of location `running`", "Channel::held"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let unheard = Channel::holding_last("counter.sample").carrying("counter.n", "sum.r");
+    assert!(counted(unheard).is_err());
+}
+
+/// The first sample is at the phase, and no error adds up.
+#[test]
+fn samples_are_taken_at_even_intervals_from_the_phase_on() {
+    let Counter { count } = Counter::coordinates();
+    let counter = Automaton::starting_in(Running)
+        .initially(Counter { count: 0.0 })
+        .transition(
+            from(Running).on(Sample).to(Running).may(always()).then(count.becomes(&count + 1)),
+        )
+        .build()
+        .expect("it is sound");
+    let sampled = |period: f64, phase: f64| {
+        let builder = Composition::builder().add("counter", &counter);
+        builder.every_from("counter.sample", period, phase).build()
+    };
+    for phase in [0.0, 0.003, 0.1, 0.25] {
+        let trajectory = sampled(0.1, phase).expect("it fits").run(100.0).expect("it runs");
+        for (number, jump) in trajectory.jumps().iter().enumerate() {
+            let exact = phase + 0.1 * number as f64;
+            assert!((jump.at.t - exact).abs() < 1e-13, "{} is not {exact}", jump.at.t);
+        }
+        assert!(trajectory.jumps().len() >= 998, "{}", trajectory.jumps().len());
+    }
+    for [period, phase] in [[0.0, 0.0], [-1.0, 0.0], [f64::NAN, 0.0], [1.0, -0.5], [1.0, f64::NAN]]
+    {
+        assert!(matches!(sampled(period, phase), Err(CompositionError::Sampler { .. })));
+    }
+}

@@ -1,0 +1,144 @@
+//! Runs that are observed as they happen.
+
+use pleach_automaton::composition::Channel;
+use pleach_automaton::composition::stream::{CsvLog, Flowing, Jumping, RunObserver, Samples};
+use pleach_automaton::{Automaton, Composition, Limit, Reason, Settings, coordinates, from};
+use pleach_discrete::vocabulary;
+use pleach_guards::always;
+
+vocabulary! {
+    enum Place: Location { Here = "here" }
+    enum Cue: Event { Sample = "sample" }
+}
+coordinates! {
+    struct Wave { place = "p", speed = "s" }
+    struct Counter { count = "n", seen = "p" }
+    struct Lag { follower = "y", input = "n" }
+}
+use {Cue::Sample, Place::Here};
+
+/// An oscillator, a counter that is sampled, and what follows the counter later: groups of their own.
+fn model(period: f64) -> Composition {
+    let Wave { place, speed } = Wave::coordinates();
+    let wave = Automaton::<_, Cue, _>::starting_in(Here)
+        .initially(Wave { place: 1.0, speed: 0.0 })
+        .flow(Here, [place.rate(&speed), speed.rate(-&place)])
+        .build()
+        .expect("it is sound");
+    let Counter { count, .. } = Counter::coordinates();
+    let counter = Automaton::starting_in(Here)
+        .initially(Counter { count: 0.0, seen: 0.0 })
+        .transition(from(Here).on(Sample).to(Here).may(always()).then(count.becomes(&count + 1)))
+        .build()
+        .expect("it is sound");
+    let Lag { follower, input } = Lag::coordinates();
+    let lag = Automaton::<_, Cue, _>::starting_in(Here)
+        .initially(Lag { follower: 0.0, input: 0.0 })
+        .flow(Here, follower.rate(&input - &follower))
+        .build()
+        .expect("it is sound");
+    Composition::builder()
+        .add("wave", &wave)
+        .add("counter", &counter)
+        .add("lag", &lag)
+        .every("counter.sample", period)
+        .channel(
+            Channel::holding_last("counter.sample")
+                .held("counter.n", "lag.n", 0.0)
+                .taking(0.1 * period, 0.1 * period),
+        )
+        .build()
+        .expect("they fit together")
+}
+
+#[test]
+fn what_is_streamed_is_what_is_recorded() {
+    let model = model(0.3);
+    let recorded = model.run(5.0).expect("it runs");
+    let mut samples = Samples::every(0.2501);
+    let finish = model.stream(Settings::default(), 5.0, &mut samples).expect("it runs");
+    assert_eq!(finish.ending, *recorded.ending());
+    assert_eq!(Some(finish.values), recorded.values_at(5.0));
+    assert_eq!(samples.rows().len(), 20);
+    for (t, values) in samples.rows() {
+        let exact = recorded.values_at(*t).expect("it lasts");
+        let is_near = |(one, other): (&f64, &f64)| (one - other).abs() < 1e-12;
+        assert!(values.iter().zip(&exact).all(is_near), "{values:?} are not {exact:?} at {t}");
+    }
+}
+
+/// Every jump with the state on both sides, and the component that takes it.
+#[test]
+fn a_log_has_both_sides_of_every_jump() {
+    #[derive(Default)]
+    struct Sides(Vec<(f64, String, [Vec<f64>; 2])>);
+    impl RunObserver for Sides {
+        fn jumps(&mut self, jump: &Jumping<'_>) {
+            let name = jump.components().next().unwrap_or_default().to_owned();
+            self.0.push((jump.at.t, name, [jump.before.to_vec(), jump.after.to_vec()]));
+        }
+    }
+    let model = model(0.3);
+    let recorded = model.run(2.0).expect("it runs");
+    let (mut sides, mut log) = (Sides::default(), CsvLog::every(1.0, Vec::new()));
+    model.stream(Settings::default(), 2.0, &mut (&mut sides, &mut log)).expect("it runs");
+    let intervals: Vec<_> = recorded.intervals().collect();
+    assert_eq!(sides.0.len(), recorded.jumps().len());
+    for (number, (t, _, [before, after])) in sides.0.iter().enumerate() {
+        assert_eq!(*t, recorded.jumps()[number].at.t);
+        let last = intervals[number].samples.last().expect("there is one");
+        let first = &intervals[number + 1].samples[0];
+        let is_near = |(one, other): (&f64, &f64)| (one - other).abs() < 1e-12;
+        assert!(before.iter().zip(&last.values).all(is_near), "{before:?}: {:?}", last.values);
+        assert!(after.iter().zip(&first.values).all(is_near), "{after:?}: {:?}", first.values);
+    }
+    let names: Vec<&str> = sides.0.iter().map(|(_, name, _)| &**name).take(2).collect();
+    assert_eq!(names[0], "counter");
+    let text = String::from_utf8(log.finish().expect("it is written")).expect("it is text");
+    let mut lines = text.lines();
+    assert!(lines.next().expect("a header").starts_with("t,j,component,event,wave.p,wave.s,"));
+    // 0, 1 and 2 seconds, and two rows for each jump.
+    assert_eq!(lines.count(), 3 + 2 * recorded.jumps().len());
+}
+
+/// A writer that fails is reported, once the run is over.
+#[test]
+fn a_log_that_cannot_be_written_says_so() {
+    struct Full;
+    impl std::io::Write for Full {
+        fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+            Err(std::io::Error::other("the disk is full"))
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let mut log = CsvLog::every(1.0, Full);
+    model(0.3).stream(Settings::default(), 2.0, &mut log).expect("it runs");
+    let fault = log.finish().err().expect("it fails");
+    assert_eq!(fault.to_string(), "the disk is full");
+}
+
+/// A record of this run meets the limit of memory early; what is streamed takes none.
+#[test]
+fn the_memory_of_a_stream_does_not_grow() {
+    #[derive(Default)]
+    struct Counts([u64; 2]);
+    impl RunObserver for Counts {
+        fn flows(&mut self, _: &Flowing<'_>) {
+            self.0[0] += 1;
+        }
+        fn jumps(&mut self, _: &Jumping<'_>) {
+            self.0[1] += 1;
+        }
+    }
+    let model = model(1.0 / 1024.0);
+    let settings = Settings { memory_limit: 1 << 20, ..Settings::default() };
+    let recorded = model.run_with(settings, 10.0).expect("it runs");
+    assert_eq!(recorded.ending().reason, Reason::Limit(Limit::Memory(1 << 20)));
+    let mut counts = Counts::default();
+    let finish = model.stream(settings, 10.0, &mut counts).expect("it runs");
+    assert_eq!(finish.ending.reason, Reason::Horizon);
+    assert_eq!(counts.0[1], 2 * 10_241 - 1);
+    assert!(counts.0[0] >= 20_480, "{}", counts.0[0]);
+}
