@@ -264,6 +264,9 @@ pub struct ImportArguments {
     /// Put a task here, or at a named point of the map; several are possible [default: far from the access points]
     #[arg(long, value_name = "X,Y|NAME", allow_hyphen_values = true, value_parser = spot)]
     pub task: Vec<Spot>,
+    /// Take the tasks from a CSV file, as `pleach run` does
+    #[arg(long, value_name = "FILE", conflicts_with = "task")]
+    pub tasks: Option<PathBuf>,
     /// How many tasks are put far from the access points where none are named
     #[arg(long, value_name = "COUNT", default_value_t = 1)]
     pub far_tasks: u16,

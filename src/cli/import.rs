@@ -7,6 +7,7 @@ use super::source::STANDARD;
 use super::status::{Failure, Status};
 use pleach::automaton::network::scenario::{LONGEST_NAME, Remark};
 use pleach::import::{self, Choices, Reading};
+use pleach::task_list;
 use std::path::Path;
 
 /// Reads a map and writes a scenario.
@@ -29,6 +30,7 @@ pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
         floors: arguments.floor.clone(),
     };
     let plan = import::read(&arguments.map, &reading)?;
+    let listed = arguments.tasks.as_deref().map(task_list::read).transpose()?.unwrap_or_default();
     let choices = Choices {
         name: arguments.name.clone().unwrap_or_else(|| name_of(&arguments.map)),
         radio: arguments.radio,
@@ -39,6 +41,7 @@ pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
         robots: usize::from(arguments.robots),
         near: arguments.near.clone(),
         tasks: arguments.task.clone(),
+        listed_tasks: listed.into_iter().map(|listed| listed.task).collect(),
         far_tasks: usize::from(arguments.far_tasks),
     };
     let (scenario, more) = import::skeleton(&plan, &choices)?;

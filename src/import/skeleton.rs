@@ -38,6 +38,8 @@ pub struct Choices {
     pub near: Option<Spot>,
     /// Where tasks are; by default where the map says, or else far from the access points.
     pub tasks: Vec<Spot>,
+    /// Tasks from a list, instead of others.
+    pub listed_tasks: Vec<Task>,
     /// How many tasks are placed far from the access points and from each other, where none are
     /// named.
     pub far_tasks: usize,
@@ -56,6 +58,7 @@ impl Choices {
             robots: 8,
             near: None,
             tasks: Vec::new(),
+            listed_tasks: Vec::new(),
             far_tasks: 1,
         }
     }
@@ -174,11 +177,14 @@ pub fn skeleton(
         .into_iter()
         .map(|position| RobotStart::at(rounded(position, workspace.extent()), rate))
         .collect();
-    if chosen.tasks.is_empty() {
+    if chosen.tasks.is_empty() && choices.listed_tasks.is_empty() {
         chosen.tasks = floor.within(&site.free_space).far_apart(&site, choices.far_tasks);
         notes.extend(too_few_places(chosen.tasks.len(), choices.far_tasks));
     }
-    scenario.task = chosen.tasks.into_iter().map(Task::at).collect();
+    scenario.task = match choices.listed_tasks.is_empty() {
+        true => chosen.tasks.into_iter().map(Task::at).collect(),
+        false => choices.listed_tasks.clone(),
+    };
     let missed = 1.0 - floor.reached(&site.free_space, &from);
     if missed > MISSED {
         notes.push(format!("robots cannot reach {} of the floor", percent(missed)));

@@ -1,6 +1,6 @@
 //! Scenarios as files for people.
 
-use crate::automaton::network::scenario::{AccessPoint, LinkRanges, RobotStart, Scenario, Task};
+use crate::automaton::network::scenario::{AccessPoint, LinkRanges, RobotStart, Scenario};
 use std::fmt::Write;
 
 /// The scenario as a file for people: places in rows, with comments; the first of the notes, the account of the floor,
@@ -37,8 +37,9 @@ pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
     for RobotStart { position, rate, .. } in &scenario.robot {
         let _ = write!(text, "\n[[robot]]\nposition = {position:?}\nrate = {rate}\n");
     }
-    for Task { position, .. } in &scenario.task {
-        let _ = write!(text, "\n[[task]]\nposition = {position:?}\n");
+    for task in &scenario.task {
+        // A task has numbers only, which can be written.
+        let _ = write!(text, "\n[[task]]\n{}", toml::to_string(task).unwrap_or_default());
     }
     text
 }
