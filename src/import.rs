@@ -3,52 +3,114 @@
 //! | file | read as |
 //! | --- | --- |
 //! | `*.yaml` with its image | a map of the ROS map server: cells that are free |
+//! | `*.png`, `*.pgm`, `*.bmp`, `*.jpg`, `*.tif` | an image alone, with the side of a pixel as the resolution |
 //! | `*.map` | a MovingAI benchmark map: cells that can be passed |
-//! | `*.geojson`, `*.json` | polygons are floor; those with the property `"kind": "wall"` are taken out of it |
-//! | `*.svg` | closed shapes, filled by the even-odd rule: the outermost bounds the floor |
+//! | `*.geojson`, `*.json` | polygons, lines and points by their properties: floor, rooms, walls, doors, places |
+//! | `*.osm` | nodes and ways of OpenStreetMap by their tags, as features of GeoJSON |
+//! | `*.building.yaml` | a building of the traffic editor of Open-RMF: what its walls enclose, or its floors |
+//! | `*.dxf` | a drawing: what the lines in the layers of walls enclose; with the feature `dxf` |
+//! | `*.svg` | closed shapes, filled by the even-odd rule, without the lines that are not closed |
 //!
-//! A map of cells is traced and simplified within a tolerance of whole cells. **No robot gets
-//! through a wall by it**: first the floor is narrowed by the tolerance, then its outline may
-//! deviate by as much, so that it lies in what was free from the beginning ([`cells`]). Other
-//! plans keep their corners; curves become chords within the tolerance.
+//! **Nothing is lost without a word.** The [`Account`] says how much floor the map has, and how much of it the plan; a
+//! loss above what is accepted is an error. Of floors that fall into pieces the largest one is taken. [`Plan::notes`]
+//! say what was recognised and what was left out, and [`gaps`] where passages are too narrow for robots.
 //!
-//! Of floors that fall into pieces the largest one is taken. [`Plan::notes`] say what was left
-//! out, and [`gaps`] where passages are too narrow for robots.
+//! A map of cells is traced along their sides, and corners are taken out within a tolerance, such that the outline stays
+//! in free cells, and what robots get through stays open. Other plans keep their corners; curves become chords within
+//! the tolerance.
 
-pub mod cells;
+mod account;
+mod building;
+mod cells;
+#[cfg(feature = "dxf")]
+mod dxf;
+mod features;
 pub mod gaps;
 mod geojson;
 mod grid;
+mod image;
+mod lattice;
+mod levels;
+mod look;
 mod moving_ai;
+mod osm;
 mod outline;
+mod places;
+mod projection;
+mod radio;
 mod ros;
 mod skeleton;
+mod smooth;
+mod spots;
+mod stroke;
+mod survey;
 mod svg;
+mod text;
 
-pub use skeleton::{Choices, SkeletonError, skeleton, text};
+pub use account::Account;
+pub use look::page;
+pub use radio::Radio;
+pub use skeleton::{Choices, SkeletonError, skeleton};
+pub use spots::Spot;
+pub use text::text;
+
+use radio::default_clearance;
 
 use crate::automaton::network::scenario::{LARGEST_COORDINATE, WorkspaceOutline};
+use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// How a map is read.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How a map is read. Lengths are in the unit of the result.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// How far the outline may deviate, in the unit of the result; by default one cell of a grid,
-    /// and a thousandth of the extent for curves.
+    /// How far the outline may deviate; by default one cell of a grid, as long as that takes at most a hundredth of the
+    /// floor, and a thousandth of the extent for curves.
     pub tolerance: Option<f64>,
     /// The length that a unit of the map has in the result; for GeoJSON in degrees, a metre.
     pub scale: f64,
-    /// Whether coordinates of GeoJSON are lengths, and not degrees of longitude and latitude.
+    /// Whether coordinates of GeoJSON are lengths in any case, and not degrees of longitude and latitude.
     pub planar: bool,
+    /// The side of a pixel, for images alone.
+    pub resolution: Option<f64>,
+    /// The distance that robots keep from walls: what they get through stays open.
+    pub clearance: Option<f64>,
+    /// The largest share of the floor that may be lost, 0 to 1.
+    pub accepted_loss: f64,
+    /// Groups of at most so many occupied cells become floor where floor is all around them; by default 2 in images, and
+    /// 0 in other maps.
+    pub specks: Option<usize>,
+    /// How wide walls drawn as lines are; by default 0.1, and as drawn in SVG.
+    pub wall_width: Option<f64>,
+    /// Which level of a building is read.
+    pub level: Option<String>,
+    /// Properties with values that make features walls.
+    pub walls: Vec<(String, String)>,
+    /// Properties with values that make features floor.
+    pub floors: Vec<(String, String)>,
 }
 
 impl Default for Reading {
     fn default() -> Self {
-        Self { tolerance: None, scale: 1.0, planar: false }
+        Self {
+            tolerance: None,
+            scale: 1.0,
+            planar: false,
+            resolution: None,
+            clearance: None,
+            accepted_loss: ACCEPTED_LOSS,
+            specks: None,
+            wall_width: None,
+            level: None,
+            walls: Vec::new(),
+            floors: Vec::new(),
+        }
     }
 }
+
+/// The share of the floor that may be lost unasked.
+pub const ACCEPTED_LOSS: f64 = 0.02;
 
 /// A floor plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,8 +119,28 @@ pub struct Plan {
     pub workspace: WorkspaceOutline,
     /// Places that the map names, if any: access points, robots, tasks.
     pub places: MapPlaces,
-    /// What was simplified or left out, as sentences.
+    /// How much of the floor of the map this is.
+    pub account: Account,
+    /// The map as it is, if it consists of cells.
+    pub picture: Option<Picture>,
+    /// The map as it is, if it consists of lines; those around polygons end where they start.
+    pub lines: Vec<Vec<[f64; 2]>>,
+    /// The account, what was recognised, and what was simplified or left out, as sentences.
     pub notes: Vec<String>,
+}
+
+/// Cells as the map has them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Cells in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// From 0 for black to 255 for white, in rows from the top.
+    pub shades: Vec<u8>,
+    /// Where the cells lie: (x, y), counted in cells from the top left, is at (a x + c y + e, b x + d y + f), with these
+    /// six numbers in the order of the alphabet.
+    pub placement: [f64; 6],
 }
 
 /// How many times its extent a floor may be away from the origin: farther out its corners are too coarse to be moved.
@@ -80,6 +162,9 @@ impl Plan {
             (*x, *y) = (*x - origin[0], *y - origin[1]);
         }
         let [x, y] = origin;
+        if let Some(Picture { placement: [.., e, f], .. }) = &mut self.picture {
+            (*e, *f) = (*e - x, *f - y);
+        }
         self.notes.push(format!(
             "({x}, {y}) of the map is the origin of the scenario, whose coordinates are at most \
              {LARGEST_COORDINATE}"
@@ -90,9 +175,20 @@ impl Plan {
     /// All its corners and places.
     fn points(&mut self) -> impl Iterator<Item = &mut [f64; 2]> {
         let WorkspaceOutline { boundary, holes } = &mut self.workspace;
-        let MapPlaces { access_points, robots, tasks } = &mut self.places;
+        let MapPlaces { access_points, robots, tasks, named } = &mut self.places;
         let lists = [boundary, access_points, robots, tasks];
-        lists.into_iter().chain(holes).flatten()
+        let places = lists.into_iter().chain(holes).chain(&mut self.lines).flatten();
+        places.chain(named.iter_mut().map(|(_, place)| place))
+    }
+
+    /// Where a spot is; none if the map has no point of its name.
+    pub fn place(&self, spot: &Spot) -> Option<[f64; 2]> {
+        match spot {
+            Spot::At(place) => Some(*place),
+            Spot::Named(name) => {
+                self.places.named.iter().find(|(known, _)| known == name).map(|(_, place)| *place)
+            }
+        }
     }
 }
 
@@ -105,6 +201,8 @@ pub struct MapPlaces {
     pub robots: Vec<[f64; 2]>,
     /// Where tasks are.
     pub tasks: Vec<[f64; 2]>,
+    /// Points with a name.
+    pub named: Vec<(String, [f64; 2])>,
 }
 
 /// Why a map cannot be read.
@@ -121,8 +219,8 @@ pub enum ImportError {
     },
     /// A kind of map that is not known.
     #[error(
-        "{}: the ending says no kind of map; known are .yaml (ROS), .map (MovingAI), .geojson, \
-         .json and .svg", .0.display()
+        "{}: the ending says no kind of map; known are .yaml (ROS map server, Open-RMF), .map (MovingAI), .geojson, \
+         .json, .osm, .dxf, .svg, and the images .png, .pgm, .bmp, .jpg and .tif", .0.display()
     )]
     UnknownKind(PathBuf),
     /// The file is not what its ending says.
@@ -163,6 +261,15 @@ fn text_of(path: &Path) -> Result<String, ImportError> {
     fs::read_to_string(path).map_err(|source| ImportError::Unreadable { path: path.into(), source })
 }
 
+/// The values of a YAML text by their keys.
+fn yaml(text: &str) -> Result<Value, String> {
+    serde_saphyr::from_str(text).map_err(|error| error.to_string())
+}
+
+fn yaml_of(path: &Path) -> Result<Value, ImportError> {
+    yaml(&text_of(path)?).map_err(|problem| ImportError::Malformed { path: path.into(), problem })
+}
+
 /// The files that a map consists of: itself and, where it names one, its image.
 ///
 /// # Errors
@@ -170,7 +277,10 @@ fn text_of(path: &Path) -> Result<String, ImportError> {
 pub fn files(path: &Path) -> Result<Vec<PathBuf>, ImportError> {
     let mut files = vec![path.to_owned()];
     if matches!(ending_of(path).as_str(), "yaml" | "yml") {
-        files.push(ros::image_of(path, &text_of(path)?)?);
+        let keys = yaml_of(path)?;
+        if !building::is_one(&keys) {
+            files.push(ros::image_of(path, &keys)?);
+        }
     }
     Ok(files)
 }
@@ -178,21 +288,40 @@ pub fn files(path: &Path) -> Result<Vec<PathBuf>, ImportError> {
 /// Reads a map; the ending of its name says of which kind it is.
 ///
 /// # Errors
-/// When the file cannot be read, is of an unknown kind or malformed, or has no floor.
+/// When the file cannot be read, is of an unknown kind or malformed, has no floor, or loses more of it than is accepted.
 pub fn read(path: &Path, reading: &Reading) -> Result<Plan, ImportError> {
     let malformed = |problem| ImportError::Malformed { path: path.into(), problem };
     let text = || text_of(path);
-    if !(reading.scale.is_finite() && reading.scale > 0.0) {
-        return Err(malformed(format!("the scale is {}: it must be positive", reading.scale)));
+    for (name, length) in [("scale", Some(reading.scale)), ("wall width", reading.wall_width)] {
+        if let Some(length) = length.filter(|length| !(length.is_finite() && *length > 0.0)) {
+            return Err(malformed(format!("the {name} is {length}: it must be positive")));
+        }
     }
     let plan = match ending_of(path).as_str() {
-        "yaml" | "yml" => ros::read(path, &text()?)?.trace(reading),
+        "yaml" | "yml" => match yaml_of(path)? {
+            keys if building::is_one(&keys) => building::read(&keys, reading),
+            keys => ros::read(path, &keys)?.trace(reading),
+        },
         "map" => moving_ai::read(&text()?).map_err(malformed)?.trace(reading),
         "geojson" | "json" => geojson::read(&text()?, reading),
+        "osm" => osm::read(&text()?, reading),
         "svg" => svg::read(&text()?, reading),
+        "dxf" => dxf(path, reading),
+        "png" | "pgm" | "pnm" | "ppm" | "pbm" | "bmp" | "jpg" | "jpeg" | "tif" | "tiff" => {
+            image::read(path, reading)?.trace(reading)
+        }
         _ => return Err(ImportError::UnknownKind(path.into())),
     };
     Ok(plan.map_err(malformed)?.near_the_origin())
+}
+
+#[cfg(feature = "dxf")]
+use self::dxf::read as dxf;
+
+#[cfg(not(feature = "dxf"))]
+fn dxf(_: &Path, _: &Reading) -> Result<Plan, String> {
+    Err("this program is built without DXF; build one with cargo build --release --features dxf"
+        .into())
 }
 
 /// A finite number: infinite ones and those that are none can be written, too.

@@ -69,6 +69,35 @@ pub(crate) fn places(site: &Site, robots: usize, dice: &mut Dice) -> Option<Vec<
     Some(nodes[fixed..].iter().map(|&place| place.into()).collect())
 }
 
+/// Places for this many robots as near to a place as they fit, by the length of the way; none if they do not fit.
+#[cfg(feature = "cli")]
+pub(crate) fn around(site: &Site, place: Point, robots: usize) -> Option<Vec<[f64; 2]>> {
+    let apart = APART * site.settings.planning_clearance();
+    // Where half of the square around the place is free, it has room for all.
+    let reach = (0..).map(|doubled| 1_i32 << doubled).take(RINGS);
+    let mut places = Vec::new();
+    for steps in reach {
+        let side = -steps..=steps;
+        let square = side.clone().flat_map(|row| side.clone().map(move |column| (column, row)));
+        let lattice = square
+            .map(|(column, row)| place + nalgebra::Vector2::new(column.into(), row.into()) * apart);
+        let free = lattice.filter(|&spot| site.free_space.contains(spot));
+        places = free.map(|spot| (site.distance(place, spot), spot)).collect();
+        // Ways to what lies within the square may be longer than to what lies outside.
+        places.retain(|(way, _)| *way <= f64::from(steps) * apart);
+        if places.len() >= robots {
+            break;
+        }
+    }
+    places.sort_by(|one, other| one.0.total_cmp(&other.0));
+    (places.len() >= robots)
+        .then(|| places[..robots].iter().map(|(_, spot)| (*spot).into()).collect())
+}
+
+/// How often the square doubles in which robots are placed: to 128 of them in a row.
+#[cfg(feature = "cli")]
+const RINGS: usize = 7;
+
 /// Random numbers by SplitMix64 (Steele, Lea and Flood, 2014): small, and the same everywhere.
 #[derive(Clone, Debug)]
 pub(crate) struct Dice(u64);

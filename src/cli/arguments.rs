@@ -7,8 +7,8 @@ use super::faults::FaultArguments;
 use super::sweep::Sweep;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use pleach::import::{ACCEPTED_LOSS, Radio, Spot};
 use std::path::PathBuf;
-use std::str::FromStr;
 use std::thread;
 
 /// Run, check and draw networks of mobile radio relays and other hybrid automata
@@ -195,60 +195,100 @@ pub struct CheckArguments {
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct ImportArguments {
-    /// The map: .yaml with its image, .map, .geojson, .json or .svg
+    /// The map: .yaml (ROS, Open-RMF), .png, .pgm, .bmp, .jpg, .tif, .map, .geojson, .json, .osm, .dxf or .svg
     pub map: PathBuf,
     /// Write the scenario to FILE [default: the standard output]
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write a page instead, on which the floor is seen over the map, and places are set by clicking: it prints the
+    /// command that makes the scenario
+    #[arg(long, value_name = "FILE.html", conflicts_with = "output")]
+    pub look: Option<PathBuf>,
     /// The name of the scenario [default: that of the map]
     #[arg(long)]
     pub name: Option<String>,
-    /// How far the outline may deviate; the floor is first narrowed by as much, so that it stays
-    /// within free cells [default: one cell, or a thousandth of the extent for curves]
+    /// The radius of the robots, the clearance that they keep from walls: what they get through stays open [default: a
+    /// 240th of the extent, if that leaves the floor whole]
+    #[arg(long, value_name = "LENGTH", visible_alias = "clearance")]
+    pub robot_radius: Option<f64>,
+    /// Accept that so much of the floor is lost, in percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * ACCEPTED_LOSS)]
+    pub accept_loss: f64,
+    /// How far walls may come out of place into the floor [default: one cell, but at most 1 % of the floor is lost by
+    /// it; a thousandth of the extent for curves]
     #[arg(long, value_name = "LENGTH")]
     pub tolerance: Option<f64>,
+    /// Take groups of at most COUNT occupied cells, with floor all around, as floor [default: 2 in images, 0 otherwise]
+    #[arg(long, value_name = "COUNT")]
+    pub specks: Option<usize>,
     /// The length of a unit of the map in the scenario
     #[arg(long, value_name = "LENGTH", default_value_t = 1.0)]
     pub scale: f64,
-    /// Coordinates of GeoJSON are lengths, not degrees
+    /// The side of a pixel, for an image alone
+    #[arg(long, value_name = "LENGTH")]
+    pub resolution: Option<f64>,
+    /// Coordinates of GeoJSON are lengths, however small the map is, not degrees
     #[arg(long)]
     pub planar: bool,
-    /// Links are fully reliable up to here [default: about a sixth of the extent]
+    /// The level of the building
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub level: Option<String>,
+    /// How wide walls drawn as lines are [default: 0.1; in SVG as drawn]
+    #[arg(long, value_name = "LENGTH")]
+    pub wall_width: Option<f64>,
+    /// Take features with this property, such as layer=INNER, as walls; several are possible
+    #[arg(long, value_name = "KEY=VALUE", value_parser = property)]
+    pub wall: Vec<(String, String)>,
+    /// Take features with this property as floor; several are possible
+    #[arg(long, value_name = "KEY=VALUE", value_parser = property)]
+    pub floor: Vec<(String, String)>,
+    /// The radio of the robots, by its usual ranges in buildings: bluetooth (8 m and 10 m), zigbee (15 m and 20 m) or
+    /// wifi (25 m and 35 m)
+    #[arg(long, value_name = "KIND")]
+    pub radio: Option<Radio>,
+    /// Links are fully reliable up to here [default: by the radio, or about a sixth of the extent]
     #[arg(long, value_name = "LENGTH")]
     pub full_range: Option<f64>,
-    /// Links end here [default: 1.25 times the full range]
+    /// Links end here [default: by the radio, or 1.25 times the full range]
     #[arg(long, value_name = "LENGTH")]
     pub max_range: Option<f64>,
-    /// The distance that robots keep from walls [default: a fortieth of the full range]
-    #[arg(long, value_name = "LENGTH")]
-    pub clearance: Option<f64>,
-    /// Put an access point here; several are possible [default: in the widest place]
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    /// Put an access point here, or at a named point of the map; several are possible [default: in the widest place]
+    #[arg(long, value_name = "X,Y|NAME", allow_hyphen_values = true, value_parser = spot)]
     pub access_point: Vec<Spot>,
     /// How many robots start around the access points where the map has none
     #[arg(long, value_name = "COUNT", default_value_t = 8)]
     pub robots: u16,
-    /// Put a task here; several are possible [default: far from the access points]
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    /// Where the robots start, and with it the access point where none is named
+    #[arg(long, value_name = "X,Y|NAME", allow_hyphen_values = true, value_parser = spot)]
+    pub near: Option<Spot>,
+    /// Put a task here, or at a named point of the map; several are possible [default: far from the access points]
+    #[arg(long, value_name = "X,Y|NAME", allow_hyphen_values = true, value_parser = spot)]
     pub task: Vec<Spot>,
+    /// Take the tasks from a CSV file, as `pleach run` does
+    #[arg(long, value_name = "FILE", conflicts_with = "task")]
+    pub tasks: Option<PathBuf>,
     /// How many tasks are put far from the access points where none are named
     #[arg(long, value_name = "COUNT", default_value_t = 1)]
     pub far_tasks: u16,
 }
 
-/// A place, written `X,Y`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot(pub [f64; 2]);
-
-impl FromStr for Spot {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text:?} is not a place: write two numbers as X,Y");
-        let (x, y) = text.split_once(',').ok_or_else(wrong)?;
-        let number = |text: &str| text.trim().parse().map_err(|_| wrong());
-        Ok(Spot([number(x)?, number(y)?]))
+/// A place, written `X,Y`, or its name.
+fn spot(text: &str) -> Result<Spot, String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
+        Some((Some(x), Some(y))) => Ok(Spot::At([x, y])),
+        Some((Some(_), None) | (None, Some(_))) => {
+            Err(format!("{text:?} is not a place: write two numbers as X,Y, or a name"))
+        }
+        _ => Ok(Spot::Named(text.into())),
     }
+}
+
+/// A property with its value, written `KEY=VALUE`.
+fn property(text: &str) -> Result<(String, String), String> {
+    let pair =
+        text.split_once('=').ok_or_else(|| format!("{text:?} is no property: write KEY=VALUE"))?;
+    Ok((pair.0.into(), pair.1.into()))
 }
 
 /// The arguments of `pleach page`.

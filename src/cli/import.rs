@@ -7,25 +7,41 @@ use super::source::STANDARD;
 use super::status::{Failure, Status};
 use pleach::automaton::network::scenario::{LONGEST_NAME, Remark};
 use pleach::import::{self, Choices, Reading};
+use pleach::task_list;
 use std::path::Path;
 
 /// Reads a map and writes a scenario.
 pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
-    output::check_places(&import::files(&arguments.map)?, &arguments.output)?;
+    output::check_places(
+        &import::files(&arguments.map)?,
+        arguments.output.iter().chain(&arguments.look),
+    )?;
     let reading = Reading {
         tolerance: arguments.tolerance,
         scale: arguments.scale,
         planar: arguments.planar,
+        resolution: arguments.resolution,
+        clearance: arguments.robot_radius,
+        accepted_loss: arguments.accept_loss / 100.0,
+        specks: arguments.specks,
+        wall_width: arguments.wall_width,
+        level: arguments.level.clone(),
+        walls: arguments.wall.clone(),
+        floors: arguments.floor.clone(),
     };
     let plan = import::read(&arguments.map, &reading)?;
+    let listed = arguments.tasks.as_deref().map(task_list::read).transpose()?.unwrap_or_default();
     let choices = Choices {
         name: arguments.name.clone().unwrap_or_else(|| name_of(&arguments.map)),
+        radio: arguments.radio,
         full_range: arguments.full_range,
         max_range: arguments.max_range,
-        clearance: arguments.clearance,
-        access_points: arguments.access_point.iter().map(|place| place.0).collect(),
+        clearance: arguments.robot_radius,
+        access_points: arguments.access_point.clone(),
         robots: usize::from(arguments.robots),
-        tasks: arguments.task.iter().map(|place| place.0).collect(),
+        near: arguments.near.clone(),
+        tasks: arguments.task.clone(),
+        listed_tasks: listed.into_iter().map(|listed| listed.task).collect(),
         far_tasks: usize::from(arguments.far_tasks),
     };
     let (scenario, more) = import::skeleton(&plan, &choices)?;
@@ -41,9 +57,50 @@ pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
         output::tell(format_args!("{}: {line}", arguments.map.display()));
     }
     let origin = arguments.map.file_name().unwrap_or_default().to_string_lossy();
-    let text = import::text(&scenario, &origin, &notes);
-    output::write(arguments.output.as_deref().unwrap_or(Path::new(STANDARD)), &text)?;
+    match &arguments.look {
+        Some(page) => {
+            let page_text = import::page(
+                &plan,
+                &scenario,
+                &choices,
+                &notes,
+                &command(std::env::args().skip(1)),
+            );
+            output::write(page, &page_text)?;
+            output::say(&format!("page: open {}\n", page.display()))?;
+        }
+        None => {
+            let text = import::text(&scenario, &origin, &notes);
+            output::write(arguments.output.as_deref().unwrap_or(Path::new(STANDARD)), &text)?;
+        }
+    }
     Ok(Status::Done)
+}
+
+/// The call without the options that a page sets, as a shell reads it.
+fn command(arguments: impl Iterator<Item = String>) -> String {
+    const SET: [&str; 6] =
+        ["--access-point", "--far-tasks", "--look", "--near", "--robots", "--task"];
+    let mut words = vec!["pleach".to_owned()];
+    let mut is_value = false;
+    for word in arguments {
+        let option = word.split('=').next().unwrap_or_default();
+        let is_set = SET.contains(&option);
+        if !is_value && !is_set {
+            words.push(quoted(&word));
+        }
+        is_value = is_set && option == word;
+    }
+    words.join(" ")
+}
+
+/// A word as a shell takes it for one.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+%@".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
 }
 
 /// A name for the scenario: that of the file, with `-` for what cannot be in a name, as far as a name may be long.
@@ -53,4 +110,27 @@ fn name_of(map: &Path) -> String {
         stem.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' }).collect();
     name.truncate(name.floor_char_boundary(LONGEST_NAME));
     if name.is_empty() { "map".into() } else { name }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_repeats_the_call_but_for_what_it_sets() {
+        let call = [
+            "import",
+            "my map.svg",
+            "--robots",
+            "9",
+            "--scale=0.1",
+            "--task=1,2",
+            "--look",
+            "a.html",
+            "--name",
+            "x",
+        ];
+        let command = command(call.into_iter().map(String::from));
+        assert_eq!(command, "pleach import 'my map.svg' --scale=0.1 --name x");
+    }
 }

@@ -17,6 +17,8 @@ pub struct Gap {
 const LENGTH_OF_WALLS: f64 = 3.0;
 /// By how much a passage may fall short of the width asked for, as a share of it: rounding.
 const ROUNDING: f64 = 1e-6;
+/// Walls that are nearer to each other than this share of the width asked for touch but for noise.
+const TOUCHING: f64 = 1e-3;
 
 /// The places where walls are less than `width` apart, the narrowest first; of several within one
 /// width of each other only the narrowest.
@@ -87,7 +89,7 @@ fn narrowest_at(side: &Side, sides: &[Side], workspace: &Workspace, width: f64) 
         let facing = edge.nearest(corner);
         let distance = (facing - corner).norm();
         let middle = nalgebra::center(&corner, &facing);
-        let is_passage = distance > 0.0
+        let is_passage = distance > TOUCHING * width
             && distance < width
             && side.way_to(&sides[index], facing) > LENGTH_OF_WALLS * distance;
         if is_passage

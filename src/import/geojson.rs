@@ -1,171 +1,97 @@
 //! Floor plans in GeoJSON (RFC 7946).
 
-use super::outline::{Ring, floor, oriented, scaled};
-use super::{MapPlaces, Plan, Reading, counted};
-use crate::figures::quantity;
-use geojson::{Feature, FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
-use i_overlay::core::fill_rule::FillRule;
-use std::collections::BTreeSet;
+use super::features::{Feature, Shape};
+use super::outline::Ring;
+use super::projection::Projection;
+use super::{Plan, Reading, survey};
+use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, JsonObject, Position};
+use std::collections::BTreeMap;
 
-/// The radius of the Earth in metres (mean radius of WGS 84).
-const EARTH: f64 = 6_371_008.8;
-
-/// Polygons, and points with a kind.
-#[derive(Default)]
-struct Found {
-    floors: Vec<Ring>,
-    walls: Vec<Ring>,
-    places: MapPlaces,
-    ignored: usize,
-    /// The kinds of polygons that are neither floor nor wall.
-    other_kinds: BTreeSet<String>,
-}
-
-/// Reads polygons as floor or walls, and points of the kinds `access_point`, `robot` and `task`.
+/// Reads features by their properties.
 pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
     let map: GeoJson = text.parse().map_err(|error| format!("{error}"))?;
-    let mut found = Found::default();
+    let mut found = Vec::new();
     match map {
-        GeoJson::Geometry(geometry) => found.add(&geometry, ""),
-        GeoJson::Feature(feature) => found.add_feature(&feature),
+        GeoJson::Geometry(geometry) => add(&mut found, &geometry, &BTreeMap::new()),
+        GeoJson::Feature(feature) => add_feature(&mut found, &feature),
         GeoJson::FeatureCollection(FeatureCollection { features, .. }) => {
-            features.iter().for_each(|feature| found.add_feature(feature));
+            features.iter().for_each(|feature| add_feature(&mut found, feature));
         }
     }
-    if found.floors.iter().all(Vec::is_empty) {
-        return Err("no floor: the map has no polygon but walls".into());
-    }
-    let mut notes = Vec::new();
-    let projection = match reading.planar {
-        true => None,
-        false => Some(Projection::around(&found)?),
-    };
-    let place = |points: Ring| match &projection {
-        None => scaled(points, reading.scale),
-        Some(projection) => {
-            scaled(points.into_iter().map(|point| projection.of(point)).collect(), reading.scale)
-        }
-    };
-    if let Some(Projection { longitude, latitude, .. }) = &projection {
-        notes.push(format!(
-            "degrees became metres around longitude {}, latitude {}",
-            quantity(*longitude),
-            quantity(*latitude)
-        ));
-    }
-    if found.ignored > 0 {
-        let ignored = counted(found.ignored, "geometry that is", "geometries that are");
-        notes.push(format!("left out: {ignored} no polygon and no point of a known kind"));
-    }
-    for kind in &found.other_kinds {
-        notes.push(format!(
-            "polygons of the kind {kind:?} are taken as floor; walls have the kind \"wall\" or \"obstacle\""
-        ));
-    }
-    let Found { floors, walls, places, .. } = found;
-    let [floors, walls] =
-        [floors, walls].map(|rings| rings.into_iter().map(place).collect::<Vec<_>>());
-    let (workspace, left_out) = floor(&floors, &walls, FillRule::NonZero)?;
-    notes.extend(left_out);
-    let places = MapPlaces {
-        access_points: place(places.access_points),
-        robots: place(places.robots),
-        tasks: place(places.tasks),
-    };
-    Ok(Plan { workspace, places, notes })
+    let (found, note) = Projection::of(&found, reading).apply(found, reading);
+    let mut plan = survey::plan(found, reading)?;
+    plan.notes.extend(note);
+    Ok(plan)
 }
 
-impl Found {
-    fn add_feature(&mut self, feature: &Feature) {
-        let kind = feature.property("kind").and_then(|kind| kind.as_str()).unwrap_or_default();
-        if let Some(geometry) = &feature.geometry {
-            self.add(geometry, kind);
-        }
+fn add_feature(found: &mut Vec<Feature>, feature: &geojson::Feature) {
+    let mut properties = BTreeMap::new();
+    if let Some(stated) = &feature.properties {
+        flatten(&mut properties, stated);
     }
-
-    fn add(&mut self, geometry: &Geometry, kind: &str) {
-        match &geometry.value {
-            GeometryValue::Polygon { coordinates } => self.add_polygon(coordinates, kind),
-            GeometryValue::MultiPolygon { coordinates } => {
-                coordinates.iter().for_each(|polygon| self.add_polygon(polygon, kind));
-            }
-            GeometryValue::Point { coordinates } => {
-                let places = match kind {
-                    "access_point" => &mut self.places.access_points,
-                    "robot" => &mut self.places.robots,
-                    "task" => &mut self.places.tasks,
-                    _ => {
-                        self.ignored += 1;
-                        return;
-                    }
-                };
-                places.extend(point(coordinates));
-            }
-            GeometryValue::GeometryCollection { geometries } => {
-                geometries.iter().for_each(|geometry| self.add(geometry, kind));
-            }
-            _ => self.ignored += 1,
-        }
+    if let Some(geometry) = &feature.geometry {
+        add(found, geometry, &properties);
     }
+}
 
-    fn add_polygon(&mut self, polygon: &[Vec<Position>], kind: &str) {
-        // GeoJSON closes its rings; of one that is left open no corner may be lost.
-        let ring = |positions: &Vec<Position>| {
-            let mut ring: Ring = positions.iter().filter_map(point).collect();
-            if ring.len() > 1 && ring.first() == ring.last() {
-                ring.pop();
+/// Properties as texts. Some programs state the tags of OpenStreetMap in an object of their own.
+fn flatten(properties: &mut BTreeMap<String, String>, stated: &JsonObject) {
+    for (key, value) in stated {
+        match value {
+            serde_json::Value::Object(tags) => flatten(properties, tags),
+            serde_json::Value::String(text) => {
+                properties.insert(key.clone(), text.clone());
             }
-            ring
-        };
-        let rings = oriented(polygon.iter().map(ring).collect());
-        match kind {
-            "wall" | "obstacle" => self.walls.extend(rings),
-            "" | "floor" => self.floors.extend(rings),
+            serde_json::Value::Null => {}
             other => {
-                self.other_kinds.insert(other.to_owned());
-                self.floors.extend(rings);
+                properties.insert(key.clone(), other.to_string());
             }
         }
     }
+}
+
+fn add(found: &mut Vec<Feature>, geometry: &Geometry, properties: &BTreeMap<String, String>) {
+    let mut push = |shape| found.push(Feature { properties: properties.clone(), shape });
+    match &geometry.value {
+        GeometryValue::Polygon { coordinates } => push(polygon(coordinates)),
+        GeometryValue::MultiPolygon { coordinates } => {
+            coordinates.iter().map(|it| polygon(it)).for_each(push)
+        }
+        GeometryValue::LineString { coordinates } => push(line(coordinates)),
+        GeometryValue::MultiLineString { coordinates } => {
+            coordinates.iter().map(|it| line(it)).for_each(push)
+        }
+        GeometryValue::Point { coordinates } => {
+            point(coordinates).map(Shape::Point).into_iter().for_each(push)
+        }
+        GeometryValue::MultiPoint { coordinates } => {
+            coordinates.iter().filter_map(point).map(Shape::Point).for_each(push);
+        }
+        GeometryValue::GeometryCollection { geometries } => {
+            geometries.iter().for_each(|geometry| add(found, geometry, properties));
+        }
+    }
+}
+
+fn polygon(rings: &[Vec<Position>]) -> Shape {
+    // GeoJSON closes its rings; of one that is left open no corner may be lost.
+    let ring = |positions: &Vec<Position>| {
+        let mut ring: Ring = positions.iter().filter_map(point).collect();
+        if ring.len() > 1 && ring.first() == ring.last() {
+            ring.pop();
+        }
+        ring
+    };
+    Shape::Polygon(rings.iter().map(ring).collect())
+}
+
+fn line(positions: &[Position]) -> Shape {
+    Shape::Line(positions.iter().filter_map(point).collect())
 }
 
 fn point(position: &Position) -> Option<[f64; 2]> {
     match *position.as_slice() {
         [x, y, ..] => Some([x, y]),
         _ => None,
-    }
-}
-
-/// Degrees as metres on the plane that touches the Earth in the middle of the map.
-struct Projection {
-    longitude: f64,
-    latitude: f64,
-    shrinking: f64,
-}
-
-impl Projection {
-    fn around(found: &Found) -> Result<Self, String> {
-        let corners = found.floors.iter().flatten();
-        let (low, high) =
-            corners.fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), corner| {
-                (
-                    [0, 1].map(|axis| low[axis].min(corner[axis])),
-                    [0, 1].map(|axis| high[axis].max(corner[axis])),
-                )
-            });
-        if low[0] < -180.0 || high[0] > 180.0 || low[1] < -90.0 || high[1] > 90.0 {
-            return Err(
-                "the coordinates are no degrees of longitude and latitude: give --planar if they \
-                 are lengths"
-                    .into(),
-            );
-        }
-        let [longitude, latitude] = [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0);
-        Ok(Self { longitude, latitude, shrinking: latitude.to_radians().cos() })
-    }
-
-    fn of(&self, [longitude, latitude]: [f64; 2]) -> [f64; 2] {
-        let east = (longitude - self.longitude).to_radians() * self.shrinking * EARTH;
-        [east, (latitude - self.latitude).to_radians() * EARTH]
     }
 }

@@ -1,16 +1,19 @@
 //! From a floor plan to a scenario that runs.
 
-use super::gaps;
-use super::{MapPlaces, Plan, bounds, counted, extent};
-use crate::automaton::network::Site;
+use super::account::percent;
+use super::places::{Places, rounded};
+use super::radio::{Radio, TRANSITION, default_clearance, default_full_range, trimmed};
+use super::spots::{Chosen, Spot};
+use super::{ACCEPTED_LOSS, Plan, bounds, counted, extent, gaps};
 use crate::automaton::network::scenario::{
-    AccessPoint, Agenda, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Task,
-    ValidScenario,
+    AccessPoint, Agenda, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Settings,
+    Task, ValidScenario, WorkspaceOutline,
 };
+use crate::automaton::network::{Site, SiteError};
 use crate::continuous::Point;
+use crate::continuous::geometry::{FreeSpace, Workspace};
 use crate::figures::quantity;
 use crate::starts::{self, Dice};
-use std::fmt::Write;
 use thiserror::Error;
 
 /// What a floor plan leaves open.
@@ -18,19 +21,25 @@ use thiserror::Error;
 pub struct Choices {
     /// The name of the scenario.
     pub name: String,
+    /// The radio that gives l and u where these are not stated.
+    pub radio: Option<Radio>,
     /// l: by default a sixth of the extent.
     pub full_range: Option<f64>,
     /// u: by default 1.25 l.
     pub max_range: Option<f64>,
-    /// ρ: by default l/40.
+    /// ρ, the radius of the robots: by default a fortieth of a sixth of the extent, where that leaves the floor whole.
     pub clearance: Option<f64>,
     /// Where access points stand: by default where the map says, or else in the middle of the
     /// widest place.
-    pub access_points: Vec<[f64; 2]>,
+    pub access_points: Vec<Spot>,
     /// How many robots start around the access points, where the map names none.
     pub robots: usize,
+    /// Where robots start instead: around this place.
+    pub near: Option<Spot>,
     /// Where tasks are; by default where the map says, or else far from the access points.
-    pub tasks: Vec<[f64; 2]>,
+    pub tasks: Vec<Spot>,
+    /// Tasks from a list, instead of others.
+    pub listed_tasks: Vec<Task>,
     /// How many tasks are placed far from the access points and from each other, where none are
     /// named.
     pub far_tasks: usize,
@@ -41,12 +50,15 @@ impl Choices {
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
+            radio: None,
             full_range: None,
             max_range: None,
             clearance: None,
             access_points: Vec::new(),
             robots: 8,
+            near: None,
             tasks: Vec::new(),
+            listed_tasks: Vec::new(),
             far_tasks: 1,
         }
     }
@@ -84,6 +96,29 @@ pub enum SkeletonError {
         /// What was chosen.
         length: f64,
     },
+    /// No point of the map has this name.
+    #[error("no point of the map is named {name:?}; named are {known}")]
+    NoSuchPoint {
+        /// The name.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// The clearance that was not chosen is too large for the floor.
+    #[error(
+        "robots with the default radius {clearance} reach only {} of the floor, since passages are too narrow for \
+         them: give --robot-radius{}, or {clearance} to leave the rest",
+        percent(*.reached),
+        fitting.map_or(String::new(), |fitting| format!(" {fitting}, with which they reach nearly all of it"))
+    )]
+    TooLarge {
+        /// The default.
+        clearance: f64,
+        /// The share of the floor that robots reach with it, 0 to 1.
+        reached: f64,
+        /// A clearance with which they reach nearly all.
+        fitting: Option<f64>,
+    },
     /// There is no room.
     #[error(
         "no place was found for {0}: the clearance may be too large for this floor, or the links \
@@ -92,70 +127,87 @@ pub enum SkeletonError {
     NoRoom(&'static str),
 }
 
-/// The share of the extent that links are long by default.
-const RANGE: f64 = 1.0 / 6.0;
-/// u / l by default.
-const TRANSITION: f64 = 1.25;
 /// The most passages that are named with their places.
 const PASSAGES_NAMED: usize = 8;
-/// Places along the longer side of the map that are looked at for access points and tasks.
-const LATTICE: usize = 48;
-/// Decimals of coordinates, relative to the extent: a millionth of it.
-const DIGITS: i32 = 6;
+/// Drafts of starts that are tried.
+const STARTS: u64 = 50;
+/// What all robots together generate by default: one robot in range of an access point carries it.
+const RATES: f64 = 0.6;
+/// The share of the floor that robots may miss without a word.
+const MISSED: f64 = 0.005;
 
 /// A scenario on the floor of a plan, and what is to be said about it: passages that are too
 /// narrow, and parts that robots cannot reach.
 ///
 /// # Errors
-/// When no access point, robots or tasks find a place.
+/// When no access point, robots or tasks find a place, and when the default clearance is too large for the floor.
 pub fn skeleton(
     plan: &Plan,
     choices: &Choices,
 ) -> Result<(ValidScenario, Vec<String>), SkeletonError> {
     lengths_are_positive(choices)?;
     let mut scenario = outline(plan, choices);
+    let (workspace, _) = scenario.workspace().map_err(SiteError::Workspace)?;
+    let floor = Places::on(&workspace);
+    let mut chosen = Chosen::of(plan, choices, workspace.extent())?;
+    if chosen.access_points.is_empty() {
+        let widest = || floor.widest(&workspace).ok_or(SkeletonError::NoRoom("an access point"));
+        chosen.access_points = vec![chosen.near.map_or_else(widest, Ok)?];
+    }
+    access_points_are_on(&workspace, &chosen.access_points)?;
+    let from: Vec<Point> = chosen.access_points.iter().map(|&place| place.into()).collect();
+    scenario.access_point =
+        chosen.access_points.iter().map(|&position| AccessPoint { position }).collect();
+    if choices.clearance.is_none() {
+        leaves_the_floor_whole(&scenario, &workspace, &floor, &from)?;
+    }
+
     let site = Site::new(&scenario)?;
     let mut notes: Vec<String> = site.repairs.iter().map(ToString::to_string).collect();
-    notes.extend(narrow_passages(&scenario, &site));
-
-    let named = places_named(plan, &scenario);
-    let places = Lattice::of(&site);
-    let access_points = first_of([&choices.access_points, &named.access_points]);
-    scenario.access_point = match access_points.is_empty() {
-        false => access_points,
-        true => vec![places.widest(&site).ok_or(SkeletonError::NoRoom("an access point"))?],
-    }
-    .into_iter()
-    .map(|position| AccessPoint { position })
-    .collect();
-    let site = Site::new(&scenario)?;
-    access_points_are_on_the_floor(&scenario, &site)?;
-    let starts = match named.robots.is_empty() {
-        false => named.robots,
-        true => (0..STARTS)
-            .find_map(|draft| starts::places(&site, choices.robots, &mut Dice::new(1, draft)))
-            .ok_or(SkeletonError::NoRoom("the robots"))?,
+    notes.extend(narrow_passages(&site));
+    let starts = match (chosen.robots.is_empty(), chosen.near) {
+        (false, _) => Some(chosen.robots),
+        (true, Some(near)) => starts::around(&site, near.into(), choices.robots),
+        (true, None) => (0..STARTS)
+            .find_map(|draft| starts::places(&site, choices.robots, &mut Dice::new(1, draft))),
     };
-    let rate = RATES / starts.len().max(1) as f64;
+    let starts = starts.ok_or(SkeletonError::NoRoom("the robots"))?;
+    let rate = rounded_rate(RATES / starts.len().max(1) as f64);
     scenario.robot = starts
         .into_iter()
-        .map(|position| RobotStart::at(rounded(position, &scenario), rounded_rate(rate)))
+        .map(|position| RobotStart::at(rounded(position, workspace.extent()), rate))
         .collect();
-    let tasks = first_of([&choices.tasks, &named.tasks]);
-    let tasks = match tasks.is_empty() {
-        false => tasks,
-        true => {
-            let far = places.far_apart(&site, choices.far_tasks);
-            notes.extend(too_few_places(far.len(), choices.far_tasks));
-            far
-        }
+    if chosen.tasks.is_empty() && choices.listed_tasks.is_empty() {
+        chosen.tasks = floor.within(&site.free_space).far_apart(&site, choices.far_tasks);
+        notes.extend(too_few_places(chosen.tasks.len(), choices.far_tasks));
+    }
+    scenario.task = match choices.listed_tasks.is_empty() {
+        true => chosen.tasks.into_iter().map(Task::at).collect(),
+        false => choices.listed_tasks.clone(),
     };
-    scenario.task = tasks.into_iter().map(Task::at).collect();
-    let unreached = places.unreached(&site);
-    if unreached > 0.005 {
-        notes.push(format!("robots cannot reach {:.1} % of the floor", 100.0 * unreached));
+    let missed = 1.0 - floor.reached(&site.free_space, &from);
+    if missed > MISSED {
+        notes.push(format!("robots cannot reach {} of the floor", percent(missed)));
     }
     Ok((ValidScenario::new(scenario)?, notes))
+}
+
+/// An error if robots with the default clearance miss more of the floor than may be lost.
+fn leaves_the_floor_whole(
+    scenario: &Scenario,
+    workspace: &Workspace,
+    floor: &Places,
+    from: &[Point],
+) -> Result<(), SkeletonError> {
+    let clearance = Settings::resolve(scenario).clearance;
+    let share = 1.0 - ACCEPTED_LOSS;
+    let space = FreeSpace::new(workspace, clearance);
+    let reached = space.map_or(0.0, |space| floor.reached(&space, from));
+    if reached >= share {
+        return Ok(());
+    }
+    let fitting = floor.clearance_that_fits(workspace, from, share, clearance);
+    Err(SkeletonError::TooLarge { clearance, reached, fitting })
 }
 
 /// What is to be said where the floor has fewer places for tasks than are asked for.
@@ -175,68 +227,54 @@ fn lengths_are_positive(choices: &Choices) -> Result<(), SkeletonError> {
     wrong.next().map_or(Ok(()), |(name, length)| Err(SkeletonError::NoLength { name, length }))
 }
 
-fn access_points_are_on_the_floor(scenario: &Scenario, site: &Site) -> Result<(), SkeletonError> {
-    let places = scenario.access_point.iter().map(|access_point| access_point.position);
-    let outside = places.into_iter().find(|&place| !site.workspace.contains(place.into()));
-    outside.map_or(Ok(()), |at| {
-        let [low, high] = bounds(&scenario.workspace.boundary);
+fn access_points_are_on(floor: &Workspace, places: &[[f64; 2]]) -> Result<(), SkeletonError> {
+    let outside = places.iter().find(|&&place| !floor.contains(place.into()));
+    outside.map_or(Ok(()), |&at| {
+        let [low, high] =
+            bounds(&floor.boundary().iter().map(|&corner| corner.into()).collect::<Vec<_>>());
         Err(SkeletonError::Outside { at, low, high })
     })
 }
 
-/// Drafts of starts that are tried.
-const STARTS: u64 = 50;
-
-/// What all robots together generate by default: one robot in range of an access point carries it.
-const RATES: f64 = 0.6;
-
 /// The scenario without access points, robots and tasks.
 fn outline(plan: &Plan, choices: &Choices) -> Scenario {
     let extent = extent(&plan.workspace.boundary);
-    let step = 10f64.powf((extent * RANGE).log10().floor() - 1.0);
-    let full_range = choices.full_range.unwrap_or((extent * RANGE / step).round() * step);
-    let max_range = choices.max_range.unwrap_or(TRANSITION * full_range);
-    let mut scenario = Scenario {
+    let of_radio = choices.radio.map(Radio::ranges);
+    let full_range = choices.full_range.or(of_radio.map(|[full, _]| full));
+    let full_range = full_range.unwrap_or_else(|| default_full_range(extent));
+    let max_range =
+        choices.max_range.or(of_radio.map(|[_, max]| max).filter(|max| *max > full_range));
+    let max_range = max_range.unwrap_or_else(|| trimmed(TRANSITION * full_range));
+    let clearance = choices.clearance.unwrap_or_else(|| default_clearance(extent));
+    let round = |ring: &Vec<[f64; 2]>| {
+        let mut ring: Vec<_> = ring.iter().map(|&corner| rounded(corner, extent)).collect();
+        ring.dedup();
+        ring
+    };
+    Scenario {
         name: choices.name.clone(),
         description: None,
-        workspace: plan.workspace.clone(),
-        link: LinkRanges::new(trimmed(full_range), trimmed(max_range)),
-        control: Control { clearance: choices.clearance, ..Control::default() },
+        workspace: WorkspaceOutline {
+            boundary: round(&plan.workspace.boundary),
+            holes: plan.workspace.holes.iter().map(round).collect(),
+        },
+        link: LinkRanges::new(full_range, max_range),
+        control: Control { clearance: Some(clearance), ..Control::default() },
         mission: Agenda::default(),
         access_point: Vec::new(),
         robot: Vec::new(),
         task: Vec::new(),
-    };
-    let round = |ring: &[[f64; 2]]| {
-        let mut ring: Vec<_> = ring.iter().map(|&corner| rounded_to(corner, extent)).collect();
-        ring.dedup();
-        ring
-    };
-    scenario.workspace.boundary = round(&plan.workspace.boundary);
-    scenario.workspace.holes = plan.workspace.holes.iter().map(|hole| round(hole)).collect();
-    scenario
-}
-
-fn first_of(lists: [&Vec<[f64; 2]>; 2]) -> Vec<[f64; 2]> {
-    lists.into_iter().find(|list| !list.is_empty()).cloned().unwrap_or_default()
-}
-
-/// The places that the map names, with as many digits as the outline has.
-fn places_named(plan: &Plan, scenario: &Scenario) -> MapPlaces {
-    let MapPlaces { access_points, robots, tasks } = &plan.places;
-    let [access_points, robots, tasks] = [access_points, robots, tasks]
-        .map(|places| places.iter().map(|&place| rounded(place, scenario)).collect());
-    MapPlaces { access_points, robots, tasks }
+    }
 }
 
 /// The passages that are too narrow, the widest by their places: a robot that is a little smaller
 /// gets through those, and clutter makes many that are narrower.
-fn narrow_passages(scenario: &Scenario, site: &Site) -> Vec<String> {
+fn narrow_passages(site: &Site) -> Vec<String> {
     let width = 2.0 * site.settings.clearance;
     let gaps = gaps::narrower_than(&site.workspace, width);
     let mut notes: Vec<String> = (gaps.iter().rev().take(PASSAGES_NAMED))
         .map(|gap| {
-            let [x, y] = rounded(gap.at, scenario);
+            let [x, y] = rounded(gap.at, site.workspace.extent());
             format!(
                 "the passage at ({x}, {y}) is {} wide: robots need 2 clearances = {}",
                 quantity(gap.width),
@@ -252,78 +290,6 @@ fn narrow_passages(scenario: &Scenario, site: &Site) -> Vec<String> {
     notes
 }
 
-/// Places on a lattice in the free space, with their distance from walls.
-struct Lattice {
-    places: Vec<Point>,
-}
-
-impl Lattice {
-    fn of(site: &Site) -> Self {
-        let corners = site.workspace.polygons().iter().flatten();
-        let low = corners.copied().reduce(|low, corner| low.inf(&corner)).unwrap_or_default();
-        let step = site.workspace.extent() / LATTICE as f64;
-        let lattice = (0..LATTICE).flat_map(|row| (0..LATTICE).map(move |column| (column, row)));
-        let places = lattice
-            .map(|(column, row)| {
-                low + nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * step
-            })
-            .filter(|&place| site.free_space.contains(place))
-            .collect();
-        Self { places }
-    }
-
-    /// The place farthest from walls.
-    fn widest(&self, site: &Site) -> Option<[f64; 2]> {
-        let clearance = |place: &Point| site.workspace.clearance(*place);
-        let widest = self.places.iter().max_by(|a, b| clearance(a).total_cmp(&clearance(b)))?;
-        Some(rounded_to((*widest).into(), site.workspace.extent()))
-    }
-
-    /// Different places far from the access points and from each other, one after another; fewer than asked for if
-    /// there are no more.
-    fn far_apart(&self, site: &Site, count: usize) -> Vec<[f64; 2]> {
-        let mut chosen = site.access_points.clone();
-        let nearest = |place: Point, chosen: &[Point]| {
-            chosen.iter().map(|&other| site.distance(other, place)).fold(f64::INFINITY, f64::min)
-        };
-        let mut distances: Vec<f64> =
-            self.places.iter().map(|&place| nearest(place, &chosen)).collect();
-        let fixed = chosen.len();
-        for _ in 0..count {
-            let reached = (0..distances.len()).filter(|&place| distances[place].is_finite());
-            let Some(farthest) = reached.max_by(|&a, &b| distances[a].total_cmp(&distances[b]))
-            else {
-                break;
-            };
-            chosen.push(self.places[farthest]);
-            distances[farthest] = f64::NEG_INFINITY; // not again
-            for (place, distance) in self.places.iter().zip(&mut distances) {
-                *distance = distance.min(site.distance(chosen[chosen.len() - 1], *place));
-            }
-        }
-        let extent = site.workspace.extent();
-        chosen[fixed..].iter().map(|&place| rounded_to(place.into(), extent)).collect()
-    }
-
-    /// The share of the places that no way leads to from an access point.
-    fn unreached(&self, site: &Site) -> f64 {
-        let reached = |place: &&Point| {
-            site.access_points.iter().any(|&from| site.distance(from, **place).is_finite())
-        };
-        1.0 - self.places.iter().filter(reached).count() as f64 / self.places.len().max(1) as f64
-    }
-}
-
-fn rounded(place: [f64; 2], scenario: &Scenario) -> [f64; 2] {
-    rounded_to(place, extent(&scenario.workspace.boundary))
-}
-
-/// A place to a millionth of the extent.
-fn rounded_to(place: [f64; 2], extent: f64) -> [f64; 2] {
-    let decimals = (DIGITS - extent.log10().floor() as i32).clamp(0, 15) as usize;
-    place.map(|value| format!("{value:.decimals$}").parse().unwrap_or(value))
-}
-
 /// A rate to four decimals, or to two digits where four decimals hold fewer; rounded down, so that the sum of all is at
 /// most [`RATES`].
 fn rounded_rate(rate: f64) -> f64 {
@@ -331,64 +297,6 @@ fn rounded_rate(rate: f64) -> f64 {
     let scale = 10f64.powf(decimals);
     // What is a whole number but for rounding stays one.
     (rate * scale + 1e-6).floor() / scale
-}
-
-/// A number without the rounding of its last digits.
-fn trimmed(value: f64) -> f64 {
-    format!("{value:.12e}").parse().unwrap_or(value)
-}
-
-/// The scenario as a file for people: places in rows, with comments.
-pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
-    let mut text = format!("# Imported from {}.\n", in_a_line(origin));
-    for note in notes {
-        // Writing into a text does not fail.
-        let _ = writeln!(text, "# - {}", in_a_line(note));
-    }
-    let _ = write!(text, "\nname = {:?}\n\n[workspace]\n", scenario.name);
-    let _ = writeln!(text, "boundary = {}", polygon(&scenario.workspace.boundary, ""));
-    if !scenario.workspace.holes.is_empty() {
-        text += "holes = [\n";
-        for hole in &scenario.workspace.holes {
-            let _ = writeln!(text, "    {},", polygon(hole, "    "));
-        }
-        text += "]\n";
-    }
-    let LinkRanges { full_range, max_range, .. } = scenario.link;
-    let _ = write!(
-        text,
-        "\n[link] # links reach through walls: choose ranges that hold through them\n\
-         full_range = {full_range}\nmax_range = {max_range}\n"
-    );
-    if let Some(clearance) = scenario.control.clearance {
-        let _ = write!(text, "\n[control]\nclearance = {clearance}\n");
-    }
-    for AccessPoint { position } in &scenario.access_point {
-        let _ = write!(text, "\n[[access_point]]\nposition = {position:?}\n");
-    }
-    for RobotStart { position, rate, .. } in &scenario.robot {
-        let _ = write!(text, "\n[[robot]]\nposition = {position:?}\nrate = {rate}\n");
-    }
-    for Task { position, .. } in &scenario.task {
-        let _ = write!(text, "\n[[task]]\nposition = {position:?}\n");
-    }
-    text
-}
-
-/// A text as a comment can hold it: line breaks and other control characters are escaped.
-fn in_a_line(text: &str) -> String {
-    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.into() };
-    text.chars().map(escaped).collect()
-}
-
-/// A polygon with a few corners in each line.
-fn polygon(ring: &[[f64; 2]], indent: &str) -> String {
-    const IN_A_LINE: usize = 6;
-    let line = |corners: &[[f64; 2]]| {
-        let corners: Vec<String> = corners.iter().map(|corner| format!("{corner:?}")).collect();
-        format!("{indent}    {},\n", corners.join(", "))
-    };
-    format!("[\n{}{indent}]", ring.chunks(IN_A_LINE).map(line).collect::<String>())
 }
 
 #[cfg(test)]

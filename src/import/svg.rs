@@ -1,12 +1,14 @@
-//! Floor plans drawn as SVG: closed paths, rectangles, polygons and circles.
+//! Floor plans drawn as SVG: closed paths, rectangles, polygons and circles, and lines that are walls.
 
 mod drawing;
 mod elements;
 mod shapes;
 
-use super::outline::{Ring, floor, scaled};
+use super::outline::{Ring, Sketch, scaled};
+use super::stroke::Stroke;
 use super::{MapPlaces, Plan, Reading, counted};
 use crate::figures::quantity;
+use drawing::Drawn;
 use i_overlay::core::fill_rule::FillRule;
 use kurbo::{BezPath, PathEl, Shape};
 
@@ -15,17 +17,16 @@ const RELATIVE_TOLERANCE: f64 = 1e-3;
 /// The least share of the extent that can be asked for: coordinates are rounded to as much.
 const LEAST_TOLERANCE: f64 = 1e-6;
 
-const NO_FLOOR: &str = "no floor: the drawing has no closed shape with an area";
-
-/// Reads all shapes, filled by the even-odd rule: what lies within an odd number of outlines is
-/// floor. The vertical axis is turned, so that it points up.
+/// Reads all shapes. Closed ones are filled by the even-odd rule: what lies within an odd number of outlines is floor.
+/// Lines that are not closed are walls as wide as they are drawn, or as asked for. The vertical axis is turned, so that
+/// it points up.
 pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
-    let (paths, more) = drawing::shapes(text)?;
-    let bounds = paths.iter().map(Shape::bounding_box).reduce(|one, other| one.union(other));
-    let bounds = bounds.ok_or(NO_FLOOR)?;
+    let (shapes, more) = drawing::shapes(text)?;
+    let bounds = shapes.iter().map(|shape| shape.outline.bounding_box());
+    let bounds = bounds.reduce(|one, other| one.union(other)).unwrap_or_default();
     let extent = bounds.width().max(bounds.height());
     if extent == 0.0 {
-        return Err(NO_FLOOR.into());
+        return Err("no floor: the drawing has no closed shape with an area, and no walls".into());
     }
     let tolerance =
         reading.tolerance.map_or(RELATIVE_TOLERANCE * extent, |length| length / reading.scale);
@@ -33,31 +34,56 @@ pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
         let [given, least] = [tolerance, LEAST_TOLERANCE * extent].map(|t| t * reading.scale);
         return Err(format!("the tolerance of curves is {given}: at least {}", quantity(least)));
     }
-    let has_curves = paths
-        .iter()
-        .flat_map(BezPath::iter)
-        .any(|element| matches!(element, PathEl::QuadTo(..) | PathEl::CurveTo(..)));
-    let upright =
-        |ring: Ring| ring.into_iter().map(|[x, y]| [x - bounds.x0, bounds.y1 - y]).collect();
-    let (closed, open): (Vec<Line>, Vec<Line>) =
-        paths.iter().flat_map(|path| lines(path, tolerance)).partition(|line| line.is_closed);
-    let rings = closed.into_iter().map(|line| scaled(upright(line.corners), reading.scale));
-    let rings: Vec<Ring> = rings.filter(|ring: &Ring| ring.len() > 2).collect();
-    let (workspace, left_out) = floor(&rings, &[], FillRule::EvenOdd)?;
-    let mut notes = Vec::new();
+    let place = |ring: Ring| {
+        let upright = ring.into_iter().map(|[x, y]| [x - bounds.x0, bounds.y1 - y]).collect();
+        scaled(upright, reading.scale)
+    };
+    let mut sketch = Sketch { rule: FillRule::EvenOdd, ..Sketch::default() };
+    let (mut left_out, mut has_curves) = (0, false);
+    for Drawn { outline, stroke } in &shapes {
+        has_curves |=
+            outline.iter().any(|it| matches!(it, PathEl::QuadTo(..) | PathEl::CurveTo(..)));
+        for Line { corners, is_closed } in lines(outline, tolerance) {
+            let width = reading.wall_width.or(stroke.map(|width| width * reading.scale));
+            match (is_closed && corners.len() > 2, width) {
+                (true, _) => sketch.floors.push(place(corners)),
+                (false, Some(width)) if width > 0.0 => {
+                    sketch.lines.push(Stroke::along(place(corners), width))
+                }
+                (false, _) => left_out += 1,
+            }
+        }
+    }
+    let (workspace, account) = sketch.floor()?;
+    let account = account.accepted(reading.accepted_loss)?;
+    let mut notes = vec![account.to_string()];
     if has_curves {
         notes.push(format!(
             "chords of curves are at most {} away from them: choose a clearance larger by that",
             quantity(tolerance * reading.scale)
         ));
     }
-    if !open.is_empty() {
-        let lines = counted(open.len(), "line that is", "lines that are");
-        notes.push(format!("left out: {lines} not closed, and bound no floor"));
+    if !sketch.lines.is_empty() {
+        let lines = counted(
+            sketch.lines.len(),
+            "line that is not closed is a wall",
+            "lines that are not closed are walls",
+        );
+        let width = match reading.wall_width {
+            Some(width) => format!("{} wide", quantity(width)),
+            None => "as wide as drawn (--wall-width)".into(),
+        };
+        notes.push(format!("{lines}, {width}"));
+    }
+    if left_out > 0 {
+        let lines = counted(left_out, "line that is", "lines that are");
+        notes.push(format!(
+            "left out: {lines} not closed and not drawn: --wall-width takes them as walls"
+        ));
     }
     notes.extend(more);
-    notes.extend(left_out);
-    Ok(Plan { workspace, places: MapPlaces::default(), notes })
+    let (places, lines) = (MapPlaces::default(), sketch.drawn());
+    Ok(Plan { workspace, places, account, picture: None, lines, notes })
 }
 
 /// A line of a path, curves as chords.

@@ -4,4 +4,5 @@
 
 mod chromium;
 mod classics;
+mod maps;
 mod missions;

@@ -16,8 +16,15 @@ const DEEPEST_USE: usize = 32;
 /// The most elements that are drawn by `use`, each as often as it is.
 const MOST_USED: usize = 1_000_000;
 
-/// The shapes of a drawing in the units of its outermost `svg`, and what is to be said about it.
-pub(super) fn shapes(text: &str) -> Result<(Vec<BezPath>, Vec<String>), String> {
+/// A shape that is seen, in the units of the outermost `svg`.
+pub(super) struct Drawn {
+    pub outline: BezPath,
+    /// How wide its outline is drawn, if it is.
+    pub stroke: Option<f64>,
+}
+
+/// The shapes of a drawing, and what is to be said about it.
+pub(super) fn shapes(text: &str) -> Result<(Vec<Drawn>, Vec<String>), String> {
     let elements = elements(text)?;
     let mut seen = Seen::default();
     if let Some(root) = elements.first() {
@@ -37,7 +44,7 @@ pub(super) fn shapes(text: &str) -> Result<(Vec<BezPath>, Vec<String>), String> 
 /// What was come across where it is seen.
 #[derive(Default)]
 struct Seen {
-    shapes: Vec<BezPath>,
+    shapes: Vec<Drawn>,
     /// How many elements were drawn by `use`.
     used: usize,
     clipped: usize,
@@ -74,13 +81,22 @@ struct Surroundings {
     transform: Affine,
     is_drawn: bool,
     is_visible: bool,
+    is_stroked: bool,
+    stroke_width: f64,
     /// How many `use` draw it, one within the other.
     uses: usize,
 }
 
 impl Default for Surroundings {
     fn default() -> Self {
-        Self { transform: Affine::IDENTITY, is_drawn: true, is_visible: true, uses: 0 }
+        Self {
+            transform: Affine::IDENTITY,
+            is_drawn: true,
+            is_visible: true,
+            is_stroked: false,
+            stroke_width: 1.0,
+            uses: 0,
+        }
     }
 }
 
@@ -96,6 +112,10 @@ impl Surroundings {
                 Some("visible") => true,
                 _ => self.is_visible,
             },
+            is_stroked: element
+                .property("stroke")
+                .map_or(self.is_stroked, |stroke| stroke != "none"),
+            stroke_width: element.stroke_width()?.unwrap_or(self.stroke_width),
             uses: self.uses,
         };
         if within.is_drawn && element.name == "svg" {
@@ -190,8 +210,10 @@ impl Seen {
             self.without_outline += 1;
             self.kinds.insert(kind);
         }
+        let Surroundings { transform, is_stroked, stroke_width, .. } = surroundings;
+        let stroke = is_stroked.then(|| stroke_width * transform.determinant().abs().sqrt());
         let outline = shapes::outline(element)?;
-        self.shapes.extend(outline.map(|outline| surroundings.transform * outline));
+        self.shapes.extend(outline.map(|outline| Drawn { outline: transform * outline, stroke }));
         Ok(())
     }
 }

@@ -115,13 +115,20 @@ impl Element {
         }
     }
 
-    /// A number without a unit, or in user units (`px`).
+    /// The width of lines, if it is stated.
+    pub fn stroke_width(&self) -> Result<Option<f64>, String> {
+        let name = "stroke-width";
+        self.property(name).map(|text| self.number(name, text)).transpose()
+    }
+
     fn stated_number(&self, name: &str) -> Result<Option<f64>, String> {
-        let number = |text: &str| {
-            let wrong = || format!("{name} of {} is {text:?}: give a number", self.name);
-            finite(text.trim_end_matches("px").trim()).ok_or_else(wrong)
-        };
-        self.attribute(name).map(number).transpose()
+        self.attribute(name).map(|text| self.number(name, text)).transpose()
+    }
+
+    /// A number without a unit, or in user units (`px`).
+    fn number(&self, name: &str, text: &str) -> Result<f64, String> {
+        let wrong = || format!("{name} of {} is {text:?}: give a number", self.name);
+        finite(text.trim_end_matches("px").trim()).ok_or_else(wrong)
     }
 
     /// The element as one that only groups what it holds.

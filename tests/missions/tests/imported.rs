@@ -11,7 +11,7 @@ use std::path::Path;
 fn a_real_building_is_serviced() {
     let map = root().join("../maps/willow.yaml");
     let plan = import::read(&map, &Reading::default()).unwrap();
-    let choices = Choices { robots: 12, ..Choices::named("willow") };
+    let choices = Choices { robots: 12, clearance: Some(0.25), ..Choices::named("willow") };
     let (scenario, _) = import::skeleton(&plan, &choices).unwrap();
     let mut album = Album::new(&scenario);
     let end = mission::run(&scenario, &mut [&mut album]).unwrap().end;
