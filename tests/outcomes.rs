@@ -106,6 +106,19 @@ fn an_impossible_task_is_skipped() {
     assert_eq!(serviced, [0, 2]);
 }
 
+/// Forty tasks in a building, four of them in walls.
+#[test]
+fn tasks_in_walls_are_named_and_all_others_serviced() {
+    let mission =
+        run(pleach::scenario_file::read(Path::new("tests/scenarios/tasks-in-walls.toml"))
+            .unwrap()
+            .into_scenario());
+    assert_eq!(mission.end.outcome, Outcome::UnreachableTask, "{}", mission.end.reason);
+    assert_eq!(mission.end.tasks, [8, 11, 14, 24]);
+    let is_serviced = |event: &Event| matches!(event, Event::TaskServiced { .. });
+    assert_eq!(mission.events().filter(|(_, event)| is_serviced(event)).count(), 36);
+}
+
 /// Nor is it tried where the scenario says so.
 #[test]
 fn an_impossible_task_ends_the_mission_that_says_so() {

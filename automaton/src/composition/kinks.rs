@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn an_instant_within_rounding_is_that_instant() {
         let jump = only(&(variable("x") - 600.0).sign());
-        for start in [0.0, 1e6, -1e6] {
+        for start in [0.0, -1e6] {
             let next = |settled: f64| jump.next(settled, &|_| Some((start, 1.0)));
             let (time, rounding) = (600.0 - start, jump.rounding(600.0, &|_| Some((start, 1.0))));
             assert!(rounding < 1e-13 * (start.abs() + 1200.0), "{rounding}");

@@ -125,6 +125,27 @@ fn robots_object_to_moves_that_would_overload_them() {
     );
 }
 
+/// One robot walks round two walls to a task that its link to the access point reaches all along.
+#[test]
+fn a_link_may_lead_through_walls_that_a_robot_can_walk_around() {
+    decided("tests/scenarios/found/baffles").services_all_within(171);
+}
+
+#[test]
+fn a_leader_near_enough_services_its_task_where_no_robot_can_come() {
+    decided("tests/scenarios/found/within-delta").services_all_within(99);
+}
+
+#[test]
+fn a_leader_leaves_a_post_that_nothing_depends_on() {
+    decided("tests/scenarios/found/unused-post-of-the-leader").services_all_within(85);
+}
+
+#[test]
+fn two_robots_do_not_exchange_their_duties_to_and_fro() {
+    decided("tests/scenarios/found/duties-to-and-fro").services_all_within(134);
+}
+
 #[test]
 fn robots_that_are_too_few_stretch_their_links_and_say_so() {
     let end = decided("scenarios/too-few").end;

@@ -1,4 +1,4 @@
-use pleach_continuous::geometry::{Disc, FreeSpace, Segment, Workspace};
+use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic, Segment, Workspace};
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -51,6 +51,80 @@ fn robot_at_a_corner_is_sent_on() {
     }
     assert_eq!(at, goal);
     assert_eq!(free_space.geodesic(goal, goal).unwrap().length, 0.0);
+}
+
+/// Points on the way between places on both sides of a hole, each with how far along it is.
+fn ways_round_hole() -> Vec<(Point, Geodesic, Vec<Point>)> {
+    let free_space = space_round_hole();
+    let places: Vec<Point> = (0..36)
+        .map(|it| Point::new(0.25 + 0.5 * f64::from(it % 6), 0.25 + 0.5 * f64::from(it / 6)))
+        .collect();
+    let pairs = places.iter().flat_map(|&from| places.iter().map(move |&to| (from, to)));
+    let ways = pairs.filter_map(|(from, to)| {
+        let way = free_space.geodesic(from, to)?;
+        let points = way
+            .segments(from)
+            .flat_map(|piece| (0..=200).map(move |step| piece.at(f64::from(step) / 200.0)));
+        let points = points.collect();
+        Some((from, way, points))
+    });
+    ways.collect()
+}
+
+#[test]
+fn a_link_reaches_every_point_of_its_way_from_both_ends() {
+    let mut longer = 0;
+    for (from, way, points) in ways_round_hole() {
+        let to = *way.waypoints.last().unwrap();
+        let farthest = |of: &dyn Fn(f64, f64) -> f64| {
+            let at = points.iter().map(|at| of((at - from).norm(), (at - to).norm()));
+            at.fold(0.0, f64::max)
+        };
+        let (reach, gap) = (farthest(&f64::max), farthest(&f64::min));
+        assert!((way.reach(from) - reach).abs() < 1e-9, "{} {reach}", way.reach(from));
+        let spacing = way.length / 200.0;
+        assert!((0.0..=spacing).contains(&(way.gap(from) - gap)), "{} {gap}", way.gap(from));
+        assert!((from - to).norm() <= reach + 1e-9 && reach <= way.length + 1e-9 && gap <= reach);
+        longer += usize::from(reach > (from - to).norm() + 0.1);
+    }
+    assert!(longer > 50, "{longer} ways lead farther from an end than the other end is");
+}
+
+/// Each link ends where the way leaves the disc around its beginning, or within the rest of the end.
+#[test]
+fn links_along_a_way_are_as_long_as_they_may_be() {
+    let way = |corners: &[(f64, f64)]| {
+        let free = FreeSpace::new(
+            &Workspace::new(
+                [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)]
+                    .map(|(x, y)| Point::new(x, y))
+                    .to_vec(),
+                vec![],
+            )
+            .unwrap(),
+            0.1,
+        )
+        .unwrap();
+        let [from, to] = [corners[0], corners[1]].map(|(x, y)| Point::new(x, y));
+        (from, free.geodesic(from, to).unwrap())
+    };
+    let (from, straight) = way(&[(1.0, 1.0), (5.0, 1.0)]);
+    let links = |longest: f64, rest: f64| straight.links(from, longest, rest);
+    assert_eq!([links(4.0, 0.0), links(3.9, 0.0), links(3.9, 0.2), links(1.0, 0.0)], [1, 2, 1, 4]);
+    assert_eq!((links(1.0, 4.0), links(1.0, 5.0)), (0, 0), "the rest covers it");
+    for (from, way, points) in ways_round_hole() {
+        let to = *way.waypoints.last().unwrap();
+        // Oracle: the last of the sampled points before the first one outside of the disc.
+        let (mut at, mut count) = (0, 0);
+        while at + 1 < points.len() && (points[at] - to).norm() > 0.0 && count < 100 {
+            let start = points[at];
+            let outside = (at..points.len()).find(|&it| (points[it] - start).norm() > 0.8);
+            at = outside.map_or(points.len() - 1, |it| it - 1);
+            count += 1;
+        }
+        let links = way.links(from, 0.8, 0.0);
+        assert!(links <= count && count <= links + 1, "{links} {count}");
+    }
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn a_user_is_told_what_became_of_each_task() {
         summary.observe(snapshot, events).unwrap();
     }
     assert_eq!(summary.serviced(), 3);
-    let closed = summary.tasks().iter().map(|task| task.closed.unwrap().1);
+    let closed = summary.tasks().iter().map(|task| task.closed.clone().unwrap().1);
     use Closing::{Ended, Withdrawn};
     assert!(closed.eq([Ended, Withdrawn, Withdrawn, Ended]));
     let text = summary.to_string();
