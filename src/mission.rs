@@ -9,7 +9,7 @@
 //! # A room
 //!
 //! A [`Scenario`](crate::automaton::network::scenario::Scenario) is plain data. A
-//! [`ValidScenario`](crate::automaton::network::scenario::ValidScenario) is one from which a mission can
+//! [`ValidScenario`] is one from which a mission can
 //! start: read from a file by [`scenario_file::read`](crate::scenario_file::read), or built as here. This is a room of 1.2 by 0.6
 //! with an access point at the left and a task at the right, farther away than one link reaches.
 //!

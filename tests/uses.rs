@@ -49,6 +49,12 @@ pub const FOR_USERS: &str = "";
 
 /// By file. Of an item that is used in several ways, harnesses are about the first.
 pub const USES: &[Use] = &[
+    (
+        "reach",
+        "continuous/src/geometry/geodesic.rs",
+        "continuous/src/geometry/geodesic.rs",
+        "path.reach(from)",
+    ),
     ("by", "automaton/src/network/order.rs", USER, "Order::by(self.passed, &self.tasks)"),
     ("locate", ROLL, ROBOT_ABSENCE, "absent.locate(&mut self.wrecks, seen,"),
     (

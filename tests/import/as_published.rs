@@ -209,7 +209,7 @@ fn specks_are_dropped_and_told() {
     let (width, height) = (120, 80);
     let mut pixels = vec![254_u8; width * height];
     let mut dice = Dice::new(7);
-    for at in 0..width * height {
+    for (at, pixel) in pixels.iter_mut().enumerate() {
         let (column, row) = (at % width, at / width);
         if column == 0
             || row == 0
@@ -217,7 +217,7 @@ fn specks_are_dropped_and_told() {
             || row == height - 1
             || dice.below(500) == 0
         {
-            pixels[at] = 0;
+            *pixel = 0;
         }
     }
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("specks.pgm");

@@ -29,6 +29,7 @@ impl Dice {
 }
 
 /// The area within a ring.
+#[allow(clippy::ptr_arg)] // it is mapped over rings
 pub fn area(ring: &Vec<[f64; 2]>) -> f64 {
     let sides = ring.iter().zip(ring.iter().cycle().skip(1));
     (sides.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0).abs()
