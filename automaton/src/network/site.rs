@@ -375,7 +375,7 @@ impl Site {
     }
 
     /// The length of a link as the tree counts it: how far it has to reach so that a robot can walk from one end to the
-    /// other without losing it. That is the distance of its ends, unless the [way](Geodesic::reach) around walls leads
+    /// other without losing it. That is the distance of its ends, unless the [way](pleach_continuous::geometry::Geodesic::reach) around walls leads
     /// farther from one of them. Infinite if no way leads there.
     pub fn link_length(&self, from: Point, to: Point) -> f64 {
         #[cfg(feature = "abstraction")]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use pleach_automaton::network::scenario::{
     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Settings, Strategy, Task,
-    WorkspaceOutline,
+    Unreachable, WorkspaceOutline,
 };
 use pleach_automaton::network::site::Measure;
 use pleach_continuous::Point;
@@ -213,7 +213,8 @@ impl PlaceGraph {
                 strategy: Some(self.strategy),
                 ..Control::default()
             },
-            mission: Agenda::default(),
+            // Properties speak of one mission, which ends with a task that is given up.
+            mission: Agenda { unreachable: Some(Unreachable::End), ..Agenda::default() },
             access_point: (self.robots..self.nodes())
                 .map(|place| AccessPoint { position: at(place) })
                 .collect(),

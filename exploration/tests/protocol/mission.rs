@@ -57,8 +57,9 @@ impl Word {
             Word::Quiet => matches!(self, Word::Task | Word::Ended),
             // A leader with past duties calls for a robot that takes them over.
             Word::Task => matches!(self, Word::Call | Word::Advance | Word::Ended),
-            // Where the trees of two access points do not meet, the other one's robots may try.
-            Word::Call => matches!(self, Word::Path | Word::Task | Word::Ended),
+            // Where the trees of two access points do not meet, the other one's robots may try. Where nobody can
+            // come, the team goes on with the longest links once.
+            Word::Call => matches!(self, Word::Path | Word::Task | Word::Advance | Word::Ended),
             Word::Path => matches!(self, Word::Advance | Word::Ended),
             Word::Advance => matches!(self, Word::Call | Word::Serviced | Word::Ended),
             Word::Serviced => matches!(self, Word::Task | Word::Ended),

@@ -107,10 +107,10 @@ fn the_end_names_the_access_point_whose_tasks_are_not_serviced() {
     short.robot.truncate(8);
     let mission = run(short);
     assert_eq!(mission.end.outcome, Outcome::InsufficientRobots, "{}", mission.end.reason);
-    assert!(mission.end.reason.starts_with("of access point 1: task "), "{}", mission.end.reason);
+    assert!(mission.end.reason.starts_with("of access point 1: "), "{}", mission.end.reason);
     let outcomes: Vec<Outcome> = mission.end.fleets.iter().map(|it| it.end.outcome).collect();
     assert_eq!(outcomes, [Outcome::Serviced, Outcome::InsufficientRobots]);
-    assert_eq!(mission.end.task.map(|task| task % 2), Some(1), "{}", mission.end.reason);
+    assert_eq!(mission.end.tasks, [1, 3], "{}", mission.end.reason);
 }
 
 /// What stands in the way of the team is no robot of its own.

@@ -436,6 +436,9 @@ impl<'a> Judge<'a> {
                 Some("the robots knew that the mission had ended, and it went on".to_owned())
             }
             // Each of these tasks has come with its own certificate.
+            _ if end.tasks.is_empty() && !self.terms.given_up().is_empty() => {
+                Some("tasks were given up, and the end lists none".to_owned())
+            }
             _ if end.outcome.is_given_up() && end.is_of_given_up_tasks() => None,
             Outcome::InsufficientRobots | Outcome::UnreachableTask | Outcome::Blocked
                 if end.task.is_some() && end.task != self.ledger.task() =>

@@ -247,7 +247,7 @@ impl Terms {
     /// What contradicts the end of a mission, in a clause.
     pub(super) fn contradiction(&self, end: &End) -> Option<String> {
         let outcome = end.outcome;
-        if end.tasks != self.given_up() && !self.has_forgotten {
+        if !end.tasks.is_empty() && end.tasks != self.given_up() && !self.has_forgotten {
             return Some(format!(
                 "the end names tasks {:?} as given up, and tasks {:?} were",
                 end.tasks,
