@@ -24,7 +24,7 @@ fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
         (shipped("too-few"), Outcome::InsufficientRobots, "tried"),
         (kept("given-up/two-clusters.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("given-up/wrong-order.toml"), Outcome::Blocked, "blocked"),
-        (kept("given-up/given-up-beside-another-fleet.toml"), Outcome::Blocked, "blocked"),
+        (kept("given-up/given-up-beside-another-fleet.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("saturated.toml"), Outcome::Blocked, "tried"),
         (kept("given-up/body-in-corridor.toml"), Outcome::Blocked, "blocked"),
         (kept("given-up/stationary-by-late-news.toml"), Outcome::Blocked, "blocked"),

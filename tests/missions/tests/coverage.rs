@@ -26,6 +26,10 @@ const SEEDS: u64 = 2;
 /// target.
 const REASONS: &[([&str; 4], &str)] = &[
     (
+        ["service of the tasks", "electing", "no bid", "over"],
+        "with unreachable = \"end\": a unit test takes it",
+    ),
+    (
         ["duty", "", "takes ", ""],
         "every two duties that an exchange may join have a row, so that none can fail half way; \
          robots with these two meet rarely",
@@ -227,6 +231,6 @@ const SAID: &[(&str, &str)] = &[
     ("shortage", ""),
     ("offer to exchange duties", ""),
     ("acceptance of an offer", ""),
-    ("refusal of an offer", ""),
+    ("refusal of an offer", "only where what two robots know differs: a unit test takes it"),
     ("request to make way", ""),
 ];

@@ -6,10 +6,16 @@ use pleach::automaton::network::record::{End, Outcome};
 use pleach::mission;
 
 /// Missions that fail again, with the cause.
-const OPEN: [(&str, &str); 1] = [(
-    "bound-leader-near-another-tree",
-    "links that are stretched as far as they may be carry no more, and the team is blocked",
-)];
+const OPEN: [(&str, &str); 2] = [
+    (
+        "bound-leader-near-another-tree",
+        "links that are stretched as far as they may be carry no more, and the team is blocked",
+    ),
+    (
+        "follower-in-the-bend",
+        "the robot behind is pulled straight across the bend, and stands in the way of the leader",
+    ),
+];
 
 /// All of their tasks are serviced now, but for those that are open.
 #[test]
