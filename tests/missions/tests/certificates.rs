@@ -27,7 +27,6 @@ fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
         (kept("given-up/given-up-beside-another-fleet.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("saturated.toml"), Outcome::Blocked, "tried"),
         (kept("given-up/body-in-corridor.toml"), Outcome::Blocked, "blocked"),
-        (kept("given-up/stationary-by-late-news.toml"), Outcome::Blocked, "blocked"),
         (reserved, Outcome::Blocked, "blocked"),
     ]
 }
