@@ -98,7 +98,6 @@
 //! # Ok::<(), pleach::automaton::BuildError>(())
 //! ```
 //!
-//!
 //! # Where to read on
 //!
 //! | layer | holds, of the network |

@@ -7,7 +7,7 @@ use crate::continuous::geometry::{FreeSpace, Workspace};
 
 /// Places along the longer side of the map.
 const LATTICE: usize = 48;
-/// A place counts as reached that is at most so many clearances from where a robot can be.
+/// A place counts as reached if it is at most this many clearances from a position that a robot can take.
 const NEAR: f64 = 2.0;
 
 /// Places on a lattice on the floor.

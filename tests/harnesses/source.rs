@@ -68,7 +68,7 @@ fn attribute<'a>(function: &'a syn::ItemFn, name: &str) -> Option<&'a syn::Attri
     function.attrs.iter().find(|it| it.path().segments.last().is_some_and(|it| it.ident == name))
 }
 
-/// A text, and those of the items that it uses, and so on.
+/// The source text of an item, followed by the text of every item that it uses, transitively.
 fn texts_used(text: String, items: &[syn::Item]) -> Vec<String> {
     let mut unused: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for item in items {
