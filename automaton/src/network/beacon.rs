@@ -59,7 +59,7 @@ pub enum Notice {
         outcome: Outcome,
         /// Why, in a sentence.
         #[serde(with = "wire")]
-        reason: Arc<str>,
+        reason: Arc<String>,
         /// The task concerned.
         task: Option<usize>,
     },
@@ -88,6 +88,10 @@ pub struct Announcement {
     pub again: bool,
     /// Whether links had been stretched when the election was repeated among the robots of all access points.
     pub stretched: bool,
+    /// Where no recruit is left, robots bid that can take their posts along to the task. If there are none, robots are too
+    /// few, for this reason.
+    #[serde(with = "wire")]
+    pub last_resort: Option<Arc<String>>,
 }
 
 impl Announcement {

@@ -343,7 +343,11 @@ mod tests {
 
     #[test]
     fn a_user_that_has_heard_the_end_misses_nobody() {
-        let ended = Notice::Ended { outcome: Outcome::Serviced, reason: "done".into(), task: None };
+        let ended = Notice::Ended {
+            outcome: Outcome::Serviced,
+            reason: "done".to_owned().into(),
+            task: None,
+        };
         let mut user = user();
         let news = user.news.next(user.site.robots, Shared::new(ended));
         assert_eq!(user.waits_for_end(&news, |period| period == 0), 0);
@@ -355,8 +359,11 @@ mod tests {
     /// is known only later.
     #[test]
     fn a_user_asks_again_when_the_mission_goes_on_after_its_end() {
-        let ended =
-            Notice::Ended { outcome: Outcome::Blocked, reason: "cut off".into(), task: None };
+        let ended = Notice::Ended {
+            outcome: Outcome::Blocked,
+            reason: "cut off".to_owned().into(),
+            task: None,
+        };
         let mut user = user();
         let news = user.news.next(user.site.robots, Shared::new(ended));
         user.waits_for_end(&news, |period| period == 0);

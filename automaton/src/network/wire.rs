@@ -174,16 +174,6 @@ impl<T: Serialize + DeserializeOwned> Part for Option<Arc<T>> {
     }
 }
 
-impl Part for Arc<str> {
-    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self)
-    }
-
-    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        String::deserialize(deserializer).map(Arc::from)
-    }
-}
-
 impl Part for Arc<[Errand]> {
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         <[Errand]>::serialize(self, serializer)

@@ -87,7 +87,7 @@ crate::observed! {
             Some(Notice::Serviced { .. } | Notice::Withdrawn { .. })
         ),
         /// The newest notice received says that the mission has ended.
-        hears_end: point.heard_end().is_some(),
+        hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
         /// The newest notice received says that the mission has ended, and that a task is given up.
         hears_failure: point.hears_failure(),
         /// The newest notice received says that the mission has ended for lack of robots.
@@ -120,8 +120,8 @@ crate::observed! {
         knows_electors: point.announced().is_some(),
         /// The token of every robot that takes part is known.
         election_over: point.is_election_over(),
-        /// The election is that of a leader.
-        leader_wanted: matches!(point.notice(), Notice::Task(_)),
+        /// The election is that of a leader, and the robots do not end the mission themselves where none of them bids.
+        leader_wanted: matches!(point.notice(), Notice::Task(task) if task.last_resort.is_none()),
         /// A robot has bid in the election.
         has_bid: point.election.as_ref().is_some_and(|election| election.best().is_some()),
     }
@@ -192,14 +192,6 @@ impl AccessPoint {
         self.newest.as_ref().map(|bulletin| &**bulletin.notice())
     }
 
-    /// How the mission has ended, as it hears.
-    fn heard_end(&self) -> Option<Outcome> {
-        match self.heard_notice()? {
-            Notice::Ended { outcome, .. } => Some(*outcome),
-            _ => None,
-        }
-    }
-
     /// How and why the robots have given up a task, as it hears.
     fn heard_failure(&self) -> Option<(Outcome, &str)> {
         match self.heard_notice()? {
@@ -215,9 +207,9 @@ impl AccessPoint {
         self.heard_failure().is_some()
     }
 
-    /// Whether it hears that the mission has ended for want of robots.
+    /// Whether it hears that the mission has ended for lack of robots.
     pub(super) fn hears_want(&self) -> bool {
-        self.heard_end() == Some(Outcome::InsufficientRobots)
+        self.heard_failure().is_some_and(|(outcome, _)| outcome == Outcome::InsufficientRobots)
     }
 
     /// The robots that take part in the elections for its task.
@@ -333,8 +325,9 @@ impl AccessPoint {
 
     /// The places from which the tree grows: the access points, and the tasks that are serviced.
     fn roots(&self) -> Vec<Point> {
-        let serviced = self.services().filter_map(|(task, _)| self.errands().nth(task));
-        let tasks = serviced.map(|(_, errand)| errand.position);
+        let requested = self.requested.as_ref().map_or(&[][..], |order| &order.tasks);
+        let serviced = self.services().filter_map(|(task, _)| requested.get(task));
+        let tasks = serviced.map(|errand| errand.position);
         self.site.access_points.iter().copied().chain(tasks).collect()
     }
 
@@ -412,6 +405,7 @@ impl AccessPoint {
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
             again: false,
             stretched: false,
+            last_resort: None,
         })
     }
 

@@ -333,7 +333,7 @@ fn a_task_that_is_pursued_is_given_up_when_no_secondary_team_is_on_its_way() {
 impl AccessPoint {
     /// It hears that the primary team has given task 0 up.
     fn hears_of_failure(&mut self) -> Vec<MissionEvent> {
-        let (outcome, reason) = (Outcome::InsufficientRobots, "too few".into());
+        let (outcome, reason) = (Outcome::InsufficientRobots, "too few".to_owned().into());
         let end = Notice::Ended { outcome, reason, task: Some(0) };
         let bulletin = self.bulletin.next(1, Shared::new(end));
         self.heard = vec![Heard::now(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }))];
@@ -370,7 +370,7 @@ fn robots_that_have_joined_are_asked_before_a_task_is_given_up() {
     assert_eq!(point.hears_of_failure(), [again]);
     let Notice::Task(announcement) = point.notice() else { panic!("{:?}", point.notice()) };
     assert_eq!(announcement.roster.iter().collect::<Vec<_>>(), [0, 1]);
-    let end = Notice::Ended { outcome: Outcome::Blocked, reason: "".into(), task: Some(0) };
+    let end = Notice::Ended { outcome: Outcome::Blocked, reason: Arc::default(), task: Some(0) };
     let late = Bulletin::first(Shared::new(Notice::Quiet)).next(1, Shared::new(end));
     assert!(point.bulletin.id().is_newer_than(late.id()), "the end is superseded");
 }

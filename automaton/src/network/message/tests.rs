@@ -75,6 +75,7 @@ fn notices() -> Vec<Notice> {
             eligible: set(&[]),
             again: true,
             stretched: true,
+            last_resort: None,
         })),
         Notice::Call { caller: 8, releases_leader: true },
         Notice::Path(Arc::new(Path { hops: hops(), releases_leader: false })),
@@ -83,7 +84,9 @@ fn notices() -> Vec<Notice> {
         Notice::Serviced { task: 0 },
         Notice::Withdrawn { task: 1 },
         Notice::Ended {
-            outcome: Outcome::Blocked, reason: "no way: “δ” 😀".into(), task: Some(1)
+            outcome: Outcome::Blocked,
+            reason: "no way: “δ” 😀".to_owned().into(),
+            task: Some(1),
         },
     ]
 }

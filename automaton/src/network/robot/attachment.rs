@@ -285,6 +285,23 @@ impl Robot {
         })
     }
 
+    /// Whether its post services no task, and could be one from which that at `target` is serviced: what is attached to it
+    /// and a node that is not below it, which it could be attached to, would be near enough.
+    pub(super) fn could_move_post_to(&self, target: Point) -> bool {
+        let Some(post) = self.duty.post().filter(|post| post.task.is_none()) else { return false };
+        let reach = self.site.settings.arrival_radius();
+        let short_of = target + (self.position - target).cap_magnitude(reach);
+        let place = if self.site.free_space.contains(short_of) { short_of } else { target };
+        let holds = |node: &Neighbour, limit: f64| self.site.walk(place, node.position()) <= limit;
+        let may_bear = |node: &Neighbour| {
+            let way = node.beacon.lineage.as_ref();
+            self.may_attach_to(node) && way.is_some_and(|way| !way.contains(post.id))
+        };
+        let mut nodes = self.neighbours.iter();
+        nodes.any(|node| may_bear(node) && holds(node, self.build_length()))
+            && self.tree_children().all(|child| holds(child, self.hard_length()))
+    }
+
     fn choose_parent(&self) -> Option<Option<Anchor>> {
         let post = *self.duty.post()?;
         let current = post.parent.and_then(|anchor| {

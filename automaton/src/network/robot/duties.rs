@@ -165,7 +165,8 @@ impl Robot {
     /// and had not heard yet that this one is elected.
     pub(super) fn is_burdened(&self) -> bool {
         let bears_fixed = || self.children().filter_map(Neighbour::post).any(Post::is_fixed);
-        matches!(*self.duty, Duty::Leading(_)) && self.is_first() && bears_fixed()
+        let leads_alone = matches!(*self.duty, Duty::Leading(_)) && self.is_first();
+        leads_alone && bears_fixed() && !self.takes_post_along()
     }
 
     /// Whether the task that is serviced from its post is over.

@@ -405,6 +405,7 @@ mod tests {
             eligible: Arc::new([0].into_iter().collect()),
             again: false,
             stretched: false,
+            last_resort: None,
         })
     }
 

@@ -7,9 +7,9 @@ use pleach_discrete::network::{Bid, Election, NodeId, Phase, Post};
 
 use super::Robot;
 use super::mission::{Effects, MissionEffect};
-use crate::network::beacon::{Announced, Notice};
+use crate::network::beacon::{Announced, Announcement, Notice};
 use crate::network::mission::{Advance, LeaderElection};
-use crate::network::record::MissionEvent;
+use crate::network::record::{MissionEvent, Outcome};
 
 /// Distances in bids are compared in units of this share of the full range l: finer differences
 /// are ties, which go to the higher index.
@@ -70,6 +70,8 @@ pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects)
         if !conflict {
             effects.push(MissionEffect::Issue(Notice::Advance { joined: None }));
         }
+    } else if let Some(notice) = robot.end_without_bid() {
+        effects.push(MissionEffect::Issue(notice));
     }
     Advance { path: None, in_vain: false }
 }
@@ -105,7 +107,7 @@ impl Robot {
             let root = way.root();
             let competes =
                 announcement.roster.contains(self.id) && announcement.eligible.contains(root);
-            competes.then(|| self.leader_bid(announcement.position, root)).flatten()
+            competes.then(|| self.leader_bid(announcement, root)).flatten()
         });
         self.place_token(bid);
     }
@@ -121,15 +123,18 @@ impl Robot {
     }
 
     /// The nearer to the task along the geodesic, the better; ties go to the tree of the first access point. None if
-    /// the task is out of reach. Where robots that have stopped block the way, others come first.
-    fn leader_bid(&self, task: Point, root: usize) -> Option<Bid> {
+    /// the task is out of reach. Where robots that have stopped block the way, others come first. As a last resort,
+    /// none either if its post cannot come along.
+    pub(super) fn leader_bid(&self, announcement: &Announcement, root: usize) -> Option<Bid> {
+        let task = announcement.position;
         let target = self.site.place_to_service(task, self.position);
         let gap = (target - task).norm();
         let open_way = self.open_way(self.position, target);
         let distance = open_way.unwrap_or_else(|| self.site.distance(self.position, target));
         let unit = BID_RESOLUTION * self.site.usual.build;
         let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
-        if !within_reach {
+        let may_come = announcement.last_resort.is_none() || self.could_move_post_to(target);
+        if !within_reach || !may_come {
             return None;
         }
         let rank = if open_way.is_none() {
@@ -151,6 +156,20 @@ impl Robot {
             let away = (self.position - place).norm();
             away.hypot(BESIDE * self.clearance()) <= self.site.settings.arrival_radius()
         })
+    }
+
+    /// The notice that robots are too few, if it has announced the task as a last resort and no robot has bid.
+    fn end_without_bid(&self) -> Option<Notice> {
+        let (id, announcement) = self.announced.as_ref()?;
+        let is_without_bid = id.issuer == self.id && self.winner().is_none();
+        let reason = announcement.last_resort.clone().filter(|_| is_without_bid)?;
+        let task = Some(announcement.task);
+        Some(Notice::Ended { outcome: Outcome::InsufficientRobots, reason, task })
+    }
+
+    /// Whether the leader takes its post along, as no robot is left that could relieve it.
+    pub(super) fn takes_post_along(&self) -> bool {
+        self.announcement().is_some_and(|announcement| announcement.last_resort.is_some())
     }
 
     /// Where a task is, if it has been announced by now.

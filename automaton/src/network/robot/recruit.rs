@@ -111,7 +111,15 @@ pub(super) fn end_unaided(
         ]);
     } else if let Some(task) = robot.current_task() {
         let (outcome, reason) = robot.why_unaided(task, phase.standstill);
-        effects.push(MissionEffect::Issue(robot.gives_up(Some(task), outcome, reason)));
+        let end = robot.gives_up(Some(task), outcome, reason);
+        match robot.last_resort(&end) {
+            Some(announcement) => effects.extend([
+                MissionEffect::Stretch,
+                MissionEffect::Report(MissionEvent::ElectionRepeated { task }),
+                MissionEffect::Issue(Notice::Task(Shared::new(announcement))),
+            ]),
+            None => effects.push(MissionEffect::Issue(end)),
+        }
     }
     phase.clone()
 }
@@ -179,6 +187,16 @@ impl Robot {
         })
     }
 
+    /// Its task as it is announced before it is given up with this notice for lack of robots, once: to those that could
+    /// take their posts along.
+    fn last_resort(&self, end: &Notice) -> Option<Announcement> {
+        let known = self.announcement().filter(|known| known.last_resort.is_none())?;
+        let Notice::Ended { outcome: Outcome::InsufficientRobots, reason, .. } = end else {
+            return None;
+        };
+        Some(Announcement { last_resort: Some(Arc::clone(reason)), ..known.clone() })
+    }
+
     fn standstill(&self) -> Option<Standstill> {
         self.team.map(|TeamReport { remaining, saturated, near_other_tree, .. }| Standstill {
             remaining,
@@ -214,9 +232,7 @@ impl Robot {
     /// Whether the team that calls may go on where it knows that no robot is left that can come: with longer links, or
     /// as its leader is near enough to the task where it is.
     fn could_stretch(&self) -> bool {
-        let calls_for_length =
-            matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
-        calls_for_length && !self.stretched
+        !self.stretched
     }
 
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {

@@ -23,8 +23,8 @@ pub(super) struct Terms {
     /// The tasks that are serviced, each with the step from which on it has been since it was announced last.
     serviced: BTreeMap<usize, usize>,
     closed: BTreeSet<usize>,
-    /// Those of them that no robot could service, with how they ended.
-    given_up: Vec<(usize, Outcome)>,
+    /// Those of them that no robot could service.
+    given_up: BTreeSet<usize>,
     /// The tasks that have ever been serviced.
     begun: BTreeSet<usize>,
     /// Whether the access point that announces tasks has been absent. One that begins again has forgotten what it
@@ -48,7 +48,7 @@ impl Terms {
             last: None,
             serviced: BTreeMap::new(),
             closed: BTreeSet::new(),
-            given_up: Vec::new(),
+            given_up: BTreeSet::new(),
             begun: BTreeSet::new(),
             has_forgotten: false,
         }
@@ -96,13 +96,13 @@ impl Terms {
                 not_before(step, due, || format!("task {task} is given up"), "taken back")?;
                 self.close(task, "is taken back")
             }
-            MissionEvent::TaskGivenUp { task, outcome, .. } => {
+            MissionEvent::TaskGivenUp { task, .. } => {
                 if self.unreachable == Unreachable::End {
                     return dispute(format!(
                         "task {task} is given up and the mission goes on, and mission.unreachable is \"end\""
                     ));
                 }
-                self.given_up.push((task, outcome));
+                self.given_up.insert(task);
                 self.close(task, "is given up")?;
                 self.is_announced(task, || format!("task {task} is given up"))
             }
@@ -186,10 +186,8 @@ impl Terms {
     /// With `order = "nearest"`, the tasks that may be announced instead of this one: they have been asked for and are
     /// neither serviced nor over.
     pub(super) fn rivals_of(&self, task: usize, step: usize) -> Vec<usize> {
-        let is_rival = |other: &usize| {
-            let other = *other;
-            other != task && self.is_open(other) && self.is_known_at(other, step)
-        };
+        let is_rival =
+            |&other: &usize| other != task && self.is_open(other) && self.is_known_at(other, step);
         match self.order {
             TaskOrder::Nearest => (0..self.tasks.len()).filter(is_rival).collect(),
             TaskOrder::File | TaskOrder::Priority => Vec::new(),
@@ -203,9 +201,7 @@ impl Terms {
 
     /// The tasks that no robot could service, ascending.
     pub(super) fn given_up(&self) -> Vec<usize> {
-        let mut tasks: Vec<usize> = self.given_up.iter().map(|&(task, _)| task).collect();
-        tasks.sort_unstable();
-        tasks
+        self.given_up.iter().copied().collect()
     }
 
     /// A task that should have been closed more than `patience` steps ago, in a sentence: one that was
@@ -254,7 +250,7 @@ impl Terms {
                 self.given_up()
             ));
         }
-        if let (Outcome::Serviced, Some((task, _))) = (outcome, self.given_up.first()) {
+        if let (Outcome::Serviced, Some(task)) = (outcome, self.given_up.first()) {
             return Some(format!("the outcome is “serviced”, and task {task} was given up"));
         }
         let task = self.task_to_end().filter(|_| outcome == Outcome::Serviced)?;

@@ -6,7 +6,9 @@ use std::f64::consts::TAU;
 use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
 use super::*;
+use crate::network::duty::Bound;
 use crate::network::mission::{Idle, LeaderElection, Standstill};
+use crate::network::record::Outcome;
 use crate::network::roll::{Absent, Wreck};
 
 /// Robot 0 hears that the task at `place` is announced; its way leads to the access point.
@@ -471,4 +473,68 @@ fn once_links_are_stretched_all_are_asked_once_more() {
     assert!(!are_asked(false, true, false), "they are as long as before");
     assert!(!are_asked(true, false, false), "no robot is redundant");
     assert!(!are_asked(true, true, true), "that was done");
+}
+
+/// A robot with a child in the east and a parent in the west, asked as a last resort to go to a task.
+fn asked_with_post(task: Point, post: Post) -> Robot {
+    let mut robot = robot();
+    robot.holds(post);
+    robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+    robot.hears(Beacon {
+        parent: Some(0),
+        ..beacon(1, east(0.5), fixed(31, 30), &[31, 30, 13, 14])
+    });
+    robot.knows_task(task);
+    robot.knows_last_resort();
+    robot
+}
+
+#[test]
+fn as_a_last_resort_a_robot_bids_if_its_links_hold_where_it_would_service_the_task() {
+    let bids = |task: Point, post: Post| {
+        let robot = asked_with_post(task, post);
+        let announcement = robot.announcement().cloned().expect("it knows the task");
+        robot.leader_bid(&announcement, 0).is_some()
+    };
+    let hard = robot().hard_length();
+    assert!(bids(north(1.0), fixed(30, 13)));
+    assert!(!bids(north(hard + 0.2), fixed(30, 13)), "neither link would hold");
+    assert!(!bids(west(hard - 0.2), fixed(30, 13)), "its child would be out of reach");
+    assert!(!bids(east(hard - 0.2), fixed(30, 13)), "its parent would be out of reach");
+    let leaf = Post { task: Some(0), ..fixed(30, 13) };
+    assert!(!bids(north(1.0), leaf), "it services another task from its post");
+}
+
+#[test]
+fn a_leader_that_takes_its_post_along_is_not_bound_by_what_depends_on_it() {
+    let mut robot = asked_with_post(north(1.0), fixed(30, 13));
+    let Duty::Relay(Relay(held)) = *robot.duty else { panic!("it holds a fixed post") };
+    robot.duty = Current::new(Duty::Bound(Bound(held)));
+    robot.measures();
+    assert!(robot.facts.post_leaves);
+    robot.holds(primary(30, None, 13));
+    robot.measures();
+    assert!(!robot.facts.burdened);
+    robot.knows_task(north(1.0));
+    robot.measures();
+    assert!(robot.facts.burdened, "a robot could relieve it");
+}
+
+#[test]
+fn where_no_post_can_come_along_the_robot_that_asked_gives_the_task_up() {
+    let ends = |asked: bool, bid: Option<Bid>| {
+        let mut robot = asked_with_post(north(1.0), fixed(30, 13));
+        if let Some((id, _)) = &mut robot.announced {
+            id.issuer = if asked { 0 } else { 4 };
+        }
+        let mut election = Election::new(robot.notice_id());
+        (0..ROBOTS).for_each(|other| election.place(other, bid.filter(|_| other == 3)));
+        robot.mission = Current::new(Mission::LeaderElection(LeaderElection));
+        robot.election = Some(Arc::new(election));
+        next_phase(&mut robot);
+        matches!(robot.notice(), Notice::Ended { outcome: Outcome::InsufficientRobots, .. })
+    };
+    assert!(ends(true, None));
+    assert!(!ends(false, None), "it is the robot that asked who says so");
+    assert!(!ends(true, Some(Bid { rank: 2, merit: -1, economy: 0 })));
 }

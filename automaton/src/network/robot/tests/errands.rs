@@ -64,7 +64,7 @@ fn a_team_whose_task_is_taken_back_is_dissolved() {
 fn after_the_end(notice: Notice) -> Phase {
     let mut robot = robot();
     robot.holds(redundant(0, 0));
-    let end = Notice::Ended { outcome: Outcome::Blocked, reason: "".into(), task: Some(0) };
+    let end = Notice::Ended { outcome: Outcome::Blocked, reason: Arc::default(), task: Some(0) };
     robot.bulletin = robot.bulletin.next(1, Shared::new(end));
     robot.measures();
     assert!(robot.jump_mission().expect("guards have values"));
@@ -86,6 +86,7 @@ fn a_robot_takes_up_a_mission_that_goes_on() {
         eligible: Arc::new([0].into_iter().collect()),
         again: false,
         stretched: false,
+        last_resort: None,
     };
     let announced = after_the_end(Notice::Task(Shared::new(announcement)));
     assert_eq!(announced, Phase::LeaderElection);

@@ -159,7 +159,8 @@ fn robots_take_posts_as_the_lemma_says() {
     let told = |robot: &Robot| {
         let task = robot.announcement().cloned().expect("it knows one");
         let task = Notice::Task(Shared::new(task));
-        let ended = Notice::Ended { task: None, outcome: Outcome::Serviced, reason: "".into() };
+        let ended =
+            Notice::Ended { task: None, outcome: Outcome::Serviced, reason: Arc::default() };
         let (advance, serviced) = (Notice::Advance { joined: None }, Notice::Serviced { task: 0 });
         let newest = &robot.bulletin;
         let next = |notice| newest.next(1, Shared::new(notice));

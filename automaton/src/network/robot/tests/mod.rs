@@ -199,9 +199,17 @@ impl Robot {
             eligible: Arc::new([0].into_iter().collect()),
             again: false,
             stretched: false,
+            last_resort: None,
         };
         let announcement = Shared::new(announcement);
         self.announced = Some((self.notice_id(), announcement));
+    }
+
+    /// The task has been announced as a last resort.
+    fn knows_last_resort(&mut self) {
+        let (id, known) = self.announced.clone().expect("it knows the task");
+        let last_resort = Some(Arc::new("too few".to_owned()));
+        self.announced = Some((id, Shared::new(Announcement { last_resort, ..(*known).clone() })));
     }
 
     /// What it is told by the newest notice.
