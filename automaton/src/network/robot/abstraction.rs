@@ -229,7 +229,7 @@ impl Robot {
             duty,
             mission,
             exchange,
-            past_offers: _, // by those since the newest notice
+            past_offers: _, // by those since the mission last made progress
             answered,
             parent,
             place,
@@ -355,7 +355,7 @@ impl Robot {
             format!("{:?}", (&**duty, posts_made, unused_periods, followed_post, below, closed)),
             format!("{:?}", (&**mission, election, bid, waited, agreement, team, stretched, wait)),
             format!("{led_from:?}"),
-            format!("{:?}", (&**exchange, answered, self.offers_since_notice())),
+            format!("{:?}", (&**exchange, answered, self.past_offers())),
             format!("{:?}", (bulletin, epoch, announced, has_reached, route)),
         ]
     }

@@ -229,8 +229,7 @@ pub struct Robot {
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
     taking_over: Option<(Duty, NodeId)>,
-    /// What has become of its offers since this notice.
-    past_offers: Option<(NoticeId, PastOffers)>,
+    past_offers: Option<PastOffers>,
     /// The offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, Answered>,
 

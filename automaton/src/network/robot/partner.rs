@@ -10,7 +10,8 @@
 //! heard: exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
 //! begins again, as if it had stopped, and has neither. A refusal that a gone mover has not heard is withdrawn, and made
 //! again if the mover comes back with its offer. A mover that cannot pass takes a partner that is somewhat
-//! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice.
+//! farther from it, and from its goal, too, but none with which it has exchanged duties since the newest notice, or since
+//! a subgroup of Σ has arrived.
 //!
 //! Each of the two checks that its own links of the tree hold from the place of the other one, and those of the other one,
 //! as far as it hears them, from its own. Robots do not know of exchanges beside them: a link has to reach every robot
@@ -19,7 +20,7 @@
 //! [`Offers`]: pleach_discrete::network::Offers
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Agreement, NodeId, Offer, Phase, Post, PostKind, Reply};
+use pleach_discrete::network::{Agreement, NodeId, NoticeId, Offer, Phase, Post, PostKind, Reply};
 
 use super::Robot;
 use super::hearing::Neighbour;
@@ -63,16 +64,16 @@ pub(super) struct Answered {
     pub in_vain: bool,
 }
 
-/// What has become of the offers of a robot since a notice.
+/// What has become of the offers of a robot since the mission last made progress.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct PastOffers {
+    /// The newest notice, and how many subgroups of Σ had arrived.
+    since: (NoticeId, usize),
     /// The robots with which it has exchanged duties, one after the other.
     exchanged: Vec<NodeId>,
     /// The robots that have refused.
     refused: Vec<NodeId>,
 }
-
-static NO_OFFERS: PastOffers = PastOffers { exchanged: Vec::new(), refused: Vec::new() };
 
 impl Robot {
     /// Once a period: a mover that makes no progress looks for a partner among the robots in its way. One that
@@ -88,7 +89,7 @@ impl Robot {
             false => (WEDGE, -CONCESSION),
         };
         let farthest = self.site.distance(self.position, goal) - gain * self.clearance();
-        let past = self.offers_since_notice();
+        let (_, refused) = self.past_offers();
         let candidates = self.neighbours.iter().filter_map(|neighbour| {
             let id = neighbour.id();
             let is_beside = neighbour.distance <= contact * self.clearance();
@@ -97,7 +98,7 @@ impl Robot {
             }
             let way = self.site.distance(neighbour.position(), goal);
             let fits = way < farthest && self.could_be_replaced_by(neighbour);
-            fits.then(|| (past.refused.contains(&id), way, id))
+            fits.then(|| (refused.contains(&id), way, id))
         });
         let best = candidates.min_by(|one, other| {
             one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)).then(one.2.cmp(&other.2))
@@ -105,36 +106,40 @@ impl Robot {
         self.partner = best.map(|(_, _, id)| id);
     }
 
-    /// Whether the two have exchanged duties since the newest notice: each of them may be nearer to the goal than the
-    /// other when it has stood still for a while. Two members of the team may a few times.
+    /// Whether the two have exchanged duties since the mission last made progress: each of them may be nearer to the goal
+    /// than the other when it has stood still for a while. Two members of the team may a few times.
     fn would_go_to_and_fro(&self, neighbour: &Neighbour) -> bool {
-        let exchanged = &self.offers_since_notice().exchanged;
+        let (exchanged, _) = self.past_offers();
         let times = exchanged.iter().filter(|&&partner| partner == neighbour.id()).count();
         times >= if self.is_of_team(neighbour) { MOST_IN_TEAM } else { 1 }
     }
 
-    /// What has become of its offers since the newest notice.
-    pub(super) fn offers_since_notice(&self) -> &PastOffers {
-        match &self.past_offers {
-            Some((notice, offers)) if *notice == self.notice_id() => offers,
-            _ => &NO_OFFERS,
-        }
+    /// The newest notice, and how many subgroups of Σ have arrived.
+    fn progress(&self) -> (NoticeId, usize) {
+        (self.notice_id(), self.subgroups_done())
+    }
+
+    /// The robots with which it has exchanged duties since the mission last made progress, and those that have refused.
+    pub(super) fn past_offers(&self) -> (&[NodeId], &[NodeId]) {
+        let past = self.past_offers.as_ref().filter(|past| past.since == self.progress());
+        past.map_or((&[], &[]), |past| (&past.exchanged, &past.refused))
     }
 
     /// It has exchanged duties with this robot.
     pub(super) fn remember_partner(&mut self, partner: NodeId) {
-        self.remember_offer(|offers| offers.exchanged.push(partner));
+        self.offers_to_remember().exchanged.push(partner);
     }
 
     /// This robot has refused its offer: others come first from now on.
     pub(super) fn remember_refusal(&mut self, partner: NodeId) {
-        self.remember_offer(|offers| offers.refused.push(partner));
+        self.offers_to_remember().refused.push(partner);
     }
 
-    fn remember_offer(&mut self, remember: impl FnOnce(&mut PastOffers)) {
-        let mut offers = self.offers_since_notice().clone();
-        remember(&mut offers);
-        self.past_offers = Some((self.notice_id(), offers));
+    fn offers_to_remember(&mut self) -> &mut PastOffers {
+        let since = self.progress();
+        self.past_offers.take_if(|past| past.since != since);
+        let none = || PastOffers { since, exchanged: Vec::new(), refused: Vec::new() };
+        self.past_offers.get_or_insert_with(none)
     }
 
     /// Whether this robot is on a way that another could go on with. One that makes way for the team is not.
