@@ -22,7 +22,6 @@ fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
         (kept("touching/cut-in-two.toml"), Outcome::UnreachableTask, "unreachable"),
         (pair, Outcome::InsufficientRobots, "bound"),
         (shipped("too-few"), Outcome::InsufficientRobots, "tried"),
-        (kept("given-up/two-clusters.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("given-up/wrong-order.toml"), Outcome::Blocked, "blocked"),
         (kept("given-up/given-up-beside-another-fleet.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("saturated.toml"), Outcome::Blocked, "tried"),

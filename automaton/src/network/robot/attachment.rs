@@ -89,11 +89,12 @@ impl Robot {
     }
 
     /// Whether it is a bound leader, and nodes that the last task or team has left without a branch may not have become
-    /// redundant yet. In the paper's order it does not wait for them.
+    /// redundant yet. In the paper's order it does not wait for them, nor if it takes its post along.
     pub(super) fn awaits_retirements(&self) -> bool {
         let may_retire = |known: &Announcement| known.again || !known.before.is_empty();
         let awaits_others = || self.is_eager() && self.announcement().is_some_and(may_retire);
         self.duty.is_bound()
+            && !self.takes_post_along()
             && self.unused_periods <= PATIENCE_WITH_UNUSED_POSTS
             && (self.is_bound_to_unused_post() || awaits_others())
     }

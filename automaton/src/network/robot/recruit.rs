@@ -230,9 +230,12 @@ impl Robot {
     }
 
     /// Whether the team that calls may go on where it knows that no robot is left that can come: with longer links, or
-    /// as its leader is near enough to the task where it is.
+    /// as its leader is near enough to the task where it is. With the eager strategy a bound leader may, too: posts may
+    /// be attached past others then, which are free.
     fn could_stretch(&self) -> bool {
-        !self.stretched
+        let calls_for_length =
+            matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
+        !self.stretched && (calls_for_length || self.is_eager())
     }
 
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
