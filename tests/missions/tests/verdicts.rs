@@ -24,19 +24,9 @@ const SETTINGS: [RangeInclusive<u64>; 2] = [1..=40, 1..=500];
 /// Small rooms of whose missions the verdicts are false, by cause.
 const FALSE_VERDICTS: &[(&str, &[u64])] = &[
     ("two posts or more would have to move", &[14, 30, 111, 142, 158, 198, 318, 359, 394, 413]),
-    (
-        "a post would have to be attached past its parent, which it keeps in the paper's order",
-        &[49, 345],
-    ),
-    (
-        "another link would have to lead round a wall, out of reach of one of its ends",
-        &[264, 405, 470],
-    ),
-    (
-        "a link would have to be longer than links are made, to leave robots room to move",
-        &[39, 132],
-    ),
-    ("a post that moves stops where the links carry no more", &[425]),
+    ("links would have to be longer than links of the tree are", &[7, 19, 39, 132, 303, 425]),
+    ("a link would have to lead round a wall, out of reach of one of its ends", &[264, 405, 470]),
+    ("posts keep their parents in the paper's order", &[49, 345]),
 ];
 /// Missions with settings at the ends of their ranges that violate an invariant, by cause.
 const VIOLATIONS: &[(&str, &[u64])] = &[];

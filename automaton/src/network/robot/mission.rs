@@ -54,7 +54,7 @@ pub enum MissionEffect {
     KeepUp,
     /// Its stillness is counted from 0.
     Restart,
-    /// From now on links of the tree may be as long as they ever are: nodes may come to be unused.
+    /// From now on links of the tree may be as long as they ever are.
     Stretch,
     /// It does not make the move that it has set off on: that would lead it nowhere.
     Stay,
@@ -99,7 +99,7 @@ impl Holds<Mission> for Robot {
                 MissionEffect::Agree(agreement) => self.agreement = agreement,
                 MissionEffect::KeepUp => self.epoch = self.notice_id().epoch(),
                 MissionEffect::Restart => self.still_periods = 0,
-                MissionEffect::Stretch => (self.stretched, self.unused_periods) = (true, 0),
+                MissionEffect::Stretch => self.stretched = true,
                 MissionEffect::Stay => self.stay(),
             }
         }

@@ -114,7 +114,6 @@ pub(super) fn end_unaided(
         let end = robot.gives_up(Some(task), outcome, reason);
         match robot.last_resort(&end) {
             Some(announcement) => effects.extend([
-                MissionEffect::Stretch,
                 MissionEffect::Report(MissionEvent::ElectionRepeated { task }),
                 MissionEffect::Issue(Notice::Task(Shared::new(announcement))),
             ]),
@@ -230,12 +229,11 @@ impl Robot {
     }
 
     /// Whether the team that calls may go on where it knows that no robot is left that can come: with longer links, or
-    /// as its leader is near enough to the task where it is. With the eager strategy a bound leader may, too: posts may
-    /// be attached past others then, which are free.
+    /// as its leader is near enough to the task where it is.
     fn could_stretch(&self) -> bool {
         let calls_for_length =
             matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
-        !self.stretched && (calls_for_length || self.is_eager())
+        calls_for_length && !self.stretched
     }
 
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {

@@ -355,7 +355,10 @@ impl Ledger {
 
     /// No recruit can come: the primary team goes on with longer links. That happens once in a mission.
     fn stretch(&mut self, robot: usize) -> Result<(), Dispute> {
-        let may = self.stage() == Stage::Calling && !self.calls_ahead && !self.stretched;
+        let may = self.stage() == Stage::Calling
+            && !self.awaits_release
+            && !self.calls_ahead
+            && !self.stretched;
         if !may || self.primary_team.first() != Some(&robot) {
             let sentence = format!(
                 "robot {robot} reports that the primary team {:?} stretches its links: it is not the first of \
