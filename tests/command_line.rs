@@ -135,7 +135,7 @@ fn a_trace_is_judged_from_its_file() {
     let sound = pleach(&["judge", path]);
     assert_eq!(sound.status.code(), Some(0));
     let verdict =
-        format!("{path}: sound, 336 control periods; the outcome is: insufficient robots");
+        format!("{path}: sound, 307 control periods; the outcome is: insufficient robots");
     assert!(said(&sound.stdout).starts_with(&verdict), "{}", said(&sound.stdout));
 
     let text = std::fs::read_to_string(&trace).unwrap();
