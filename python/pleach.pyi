@@ -47,6 +47,9 @@ class Mission:
     def task(self) -> int | None:
         """The task that the end concerns."""
     @property
+    def given_up(self) -> list[int]:
+        """The tasks that no robot could service; the event `task_given_up` of each has the reason."""
+    @property
     def times(self) -> NDArray[numpy.float64]:
         """Shape (K,): the instants at which the periods begin."""
     @property

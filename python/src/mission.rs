@@ -59,6 +59,7 @@ impl Recorder {
             outcome: end.outcome.name().into(),
             reason: end.reason,
             task: end.task,
+            given_up: end.tasks,
             name: self.name,
             scenario: self.scenario,
             times: Array1::from_vec(self.times),
@@ -135,6 +136,8 @@ pub struct Mission {
     reason: String,
     #[pyo3(get)]
     task: Option<usize>,
+    #[pyo3(get)]
+    given_up: Vec<usize>,
     scenario: String,
     times: Array1<f64>,
     positions: Array3<f64>,

@@ -41,6 +41,14 @@ def test_the_story_is_that_of_the_scenario(mission):
     assert mission.scenario["control"]["max_steps"] == 20000
 
 
+def test_tasks_that_are_given_up_are_named_with_reasons(mission):
+    assert mission.given_up == [1, 2]
+    reasons = {e["task"]: e["reason"] for e in mission.events if e["event"] == "task_given_up"}
+    assert list(reasons) == mission.given_up and all("recruit" in it for it in reasons.values())
+    ended = pleach.run(SCENARIOS / "too-few.toml", {"mission.unreachable": "end"})
+    assert ended.task == 1 and all(event.get("task") != 2 for event in ended.events)
+
+
 def test_robots_move_at_most_a_step(mission):
     steps = numpy.linalg.norm(numpy.diff(mission.positions, axis=0), axis=2)
     assert 0 < steps.max() <= mission.scenario["control"]["step_radius"] + 1e-9
