@@ -142,3 +142,25 @@ fn the_memory_of_a_stream_does_not_grow() {
     assert_eq!(counts.0[1], 2 * 10_241 - 1);
     assert!(counts.0[0] >= 20_480, "{}", counts.0[0]);
 }
+
+/// As many ticks as a day of control at 100 Hz has, and more: what the process holds is what it held after
+/// a thousandth of them. It takes half a minute with `--release`.
+#[test]
+#[ignore = "it takes minutes"]
+fn ten_million_ticks_take_no_memory() {
+    let held = || {
+        let status = std::fs::read_to_string("/proc/self/status").expect("Linux says what is held");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("it is there");
+        line.trim().trim_end_matches(" kB").parse::<u64>().expect("it is a number")
+    };
+    let period = 1.0 / 1024.0;
+    let model = model(period);
+    let settings = Settings { jump_limit: u64::MAX, step_limit: u64::MAX, ..Settings::default() };
+    let mut held_after = |ticks: f64| {
+        let finish = model.stream(settings, ticks * period, &mut ()).expect("it runs");
+        assert_eq!(finish.ending.reason, Reason::Horizon);
+        held()
+    };
+    let [few, many] = [1e4, 1e7].map(&mut held_after);
+    assert!(many < few + 1024, "{few} kB, and then {many}");
+}
