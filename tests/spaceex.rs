@@ -42,6 +42,16 @@ fn a_component_with_bound_constants_is_read_and_answered() {
     assert_eq!(verdict(&problem([BALL[0], &low])), Verdict::Violated);
 }
 
+/// Sets at the floor are merged into one, from which a ball of half a metre more or less rises higher than
+/// it was dropped: the proof needs finer ones.
+#[test]
+fn where_merged_sets_decide_nothing_finer_ones_are_tried() {
+    let dropped = BALL[1].replace("10 <= x <= 10.2", "1 <= x <= 1.2");
+    let ball =
+        problem([BALL[0], &dropped.replace("x >= 10.25", "x >= 1.25").replace("= 6", "= 2")]);
+    assert_eq!(verdict(&ball), Verdict::Holds);
+}
+
 /// Two components that tick together, an input within bounds, a value within bounds after a jump, and
 /// no word on where the tank begins: in both of its locations.
 #[test]
@@ -80,7 +90,8 @@ fn write(problem: &Problem) -> Written {
 /// What is written reads back as the same automaton and the same question.
 #[test]
 fn what_is_written_is_read_back() {
-    for files in [BALL, TIMERS, RELAY] {
+    let tank = [TANK, "initially = \"x == 0\"\nforbidden = \"y >= 6\"\ntime-horizon = 10\n"];
+    for files in [BALL, TIMERS, RELAY, tank] {
         let first = problem(files);
         let written = write(&first);
         let second = problem([&written.model, &written.configuration]);
@@ -620,10 +631,8 @@ fn inner_variables_may_be_named_briefly() {
     assert_eq!(verdict(&problem([RELAY[0], &brief])), Verdict::Holds);
 }
 
-/// An output is what the invariants say, in invariants, guards, flows and questions.
-#[test]
-fn outputs_stand_for_their_formulas() {
-    let model = r#"<sspaceex><component id="tank">
+/// The outputs y and z of a tank.
+const TANK: &str = r#"<sspaceex><component id="tank">
         <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
         <param name="y" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
         <param name="z" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
@@ -632,17 +641,61 @@ fn outputs_stand_for_their_formulas() {
             <flow>x' == z - x</flow>
         </location>
     </component></sspaceex>"#;
+
+/// An output is what the invariants say, in invariants, guards, flows and questions, and a signal of runs.
+#[test]
+fn outputs_stand_for_their_formulas() {
     let asked = |forbidden: &str| {
         let configuration = format!(
             "initially = \"x == 0\"\nforbidden = \"{forbidden}\"\noutput-variables = \"x, y\"\ntime-horizon = 10\n"
         );
-        problem([model, &configuration])
+        problem([TANK, &configuration])
     };
+    let tank = asked("y >= 5.1");
+    assert!(tank.automata[0].signals().map(|(name, _)| name).eq(["y", "z"]));
+    let run = tank.automata[0].run(1.0).unwrap();
+    assert!((run.value("y", 1.0).unwrap() - 3.0).abs() < 1e-12);
     // x′ is 1, up to where y is 5.
     assert_eq!(asked("y >= 5.1").automata[0].names(), ["x"]);
     assert_eq!(verdict(&asked("y >= 5.1")), Verdict::Holds);
     assert_eq!(verdict(&asked("x >= 2.1")), Verdict::Holds);
     assert_eq!(verdict(&asked("y >= 4.5")), Verdict::Violated);
+}
+
+/// The input is within ±1 at first, and from the jump at 1 s on between 2 and 3: x is at most 1 + 3, and can
+/// be nearly that.
+#[test]
+fn an_input_may_have_other_bounds_in_other_locations() {
+    let model = |bounds: &str| {
+        format!(
+            r#"<sspaceex><component id="s">
+            <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
+            <param name="t" type="real" d1="1" d2="1" local="false" dynamics="any"/>
+            <param name="u" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
+            <location id="1" name="slow">
+                <invariant>-1 &lt;= u &amp; u {bounds} 1 &amp; t &lt;= 1</invariant>
+                <flow>x' == u &amp; t' == 1</flow>
+            </location>
+            <location id="2" name="fast">
+                <invariant>2 &lt;= u &amp; u &lt;= 3 &amp; t &lt;= 2</invariant>
+                <flow>x' == u &amp; t' == 1</flow>
+            </location>
+            <transition source="1" target="2"><guard>t &gt;= 1</guard></transition>
+        </component></sspaceex>"#
+        )
+    };
+    let asked = |forbidden: &str| {
+        format!(
+            "initially = \"x == 0 & t == 0 & loc()==slow\"\nforbidden = \"{forbidden}\"\ntime-horizon = 3\n"
+        )
+    };
+    let verdict_of = |forbidden: &str| verdict(&problem([&model("&lt;="), &asked(forbidden)]));
+    assert_eq!(verdict_of("x >= 4.01"), Verdict::Holds);
+    assert_eq!(verdict_of("x <= 0.99 & t >= 2"), Verdict::Holds);
+    assert_eq!(verdict_of("x >= 3.9"), Verdict::Violated);
+    let said = refusal(&model("&lt;"), &asked("x >= 5"));
+    assert!(said.contains("some of its bounds are strict"), "{said}");
+    assert!(refusal(&model("&lt;="), &asked("u >= 5")).contains("`u` is no variable"));
 }
 
 /// The time to read a model grows with its length, and not with its square.

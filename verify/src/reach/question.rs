@@ -212,6 +212,29 @@ pub fn prove(
     Ok(Proof { enclosure, doubts, clearances })
 }
 
+/// `proof`, or a finer one that holds, where it does not: the states in which a guard may hold, which jumps
+/// carry on as one set for each of the [clusters](Settings::clusters), are covered by ten times as many.
+///
+/// # Errors
+///
+/// As for [`prove`].
+pub fn refine(
+    proof: Proof,
+    model: &Model,
+    starts: &[StateSet],
+    forbidden: &[Forbidden],
+    settings: &Settings,
+    progress: &mut dyn FnMut(Interval) -> ControlFlow<()>,
+) -> Result<Proof, ReachError> {
+    let jumps = proof.enclosure.visits.iter().any(|visit| visit.depth > 0);
+    let is_stopped = proof.enclosure.ending == Completion::Stopped;
+    if proof.holds() || !jumps || is_stopped {
+        return Ok(proof);
+    }
+    let finer = prove(model, starts, forbidden, &settings.finer(), progress)?;
+    Ok(if finer.holds() { finer } else { proof })
+}
+
 /// Whether there are sets of initial states, and all are sets of states of a model.
 pub(super) fn check_starts(model: &Model, starts: &[StateSet]) -> Result<(), ReachError> {
     if starts.is_empty() {
@@ -231,7 +254,7 @@ pub(super) fn check_starts(model: &Model, starts: &[StateSet]) -> Result<(), Rea
 /// Whether a run of `automaton` that begins in one of `starts` comes to a forbidden state.
 ///
 /// First all runs are enclosed; where that does not decide, single runs are searched for one that
-/// does.
+/// does, and then all are enclosed in [finer](refine) sets.
 ///
 /// # Errors
 ///
@@ -273,13 +296,15 @@ pub fn verify<L: Location + Sync, E: Event + Sync, S: Coordinates>(
     effort: &Effort,
 ) -> Result<Answer, ReachError> {
     let model = Model::with_uncertain(automaton, uncertain)?;
-    let proof = prove(&model, starts, forbidden, settings, &mut |_| ControlFlow::Continue(()))?;
+    let progress = &mut |_| ControlFlow::Continue(());
+    let proof = prove(&model, starts, forbidden, settings, progress)?;
     if proof.holds() {
         return Ok(Answer::Holds(proof));
     }
     let found = falsify(automaton, uncertain, starts, forbidden, settings, effort);
-    Ok(match found {
-        Some(found) if found.is_violation => Answer::Violated(Box::new(found)),
-        _ => Answer::Undecided(proof),
-    })
+    if let Some(found) = found.filter(|found| found.is_violation) {
+        return Ok(Answer::Violated(Box::new(found)));
+    }
+    let proof = refine(proof, &model, starts, forbidden, settings, progress)?;
+    Ok(if proof.holds() { Answer::Holds(proof) } else { Answer::Undecided(proof) })
 }

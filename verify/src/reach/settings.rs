@@ -82,6 +82,17 @@ impl Settings {
         plus_up(self.horizon, -elapsed.lower())
     }
 
+    /// How long runs have lasted that are not beyond the horizon; none if all are.
+    pub(super) fn in_time(&self, elapsed: Interval) -> Option<Interval> {
+        Interval::new(elapsed.lower(), elapsed.upper().min(self.horizon)).ok()
+    }
+
+    /// More sets at guards, and fewer in all, so that a second attempt takes no longer than the first may.
+    pub(super) fn finer(&self) -> Self {
+        let (clusters, segment_limit) = (10 * self.clusters, self.segment_limit / 5);
+        Settings { clusters, segment_limit, ..self.clone() }
+    }
+
     /// Says which setting makes no sense, if one does.
     pub(super) fn check(&self, dimension: usize) -> Result<(), InvalidSetting> {
         let wrong =
