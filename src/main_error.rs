@@ -26,14 +26,14 @@ impl fmt::Display for MainError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut message = self.0.to_string();
         formatter.write_str(&message)?;
-        let causes = std::iter::successors(self.0.source(), |cause| cause.source());
-        for cause in causes {
-            let next = cause.to_string();
+        let mut cause = self.0.source();
+        while let Some(error) = cause {
+            let next = error.to_string();
             // Many errors end with the message of their cause.
             if !message.ends_with(&next) {
                 write!(formatter, "\n  because {next}")?;
             }
-            message = next;
+            (message, cause) = (next, error.source());
         }
         Ok(())
     }

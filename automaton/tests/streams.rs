@@ -150,7 +150,8 @@ fn the_memory_of_a_stream_does_not_grow() {
 fn ten_million_ticks_take_no_memory() {
     let held = || {
         let status = std::fs::read_to_string("/proc/self/status").expect("Linux says what is held");
-        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("it is there");
+        let line =
+            status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("it is there");
         line.trim().trim_end_matches(" kB").parse::<u64>().expect("it is a number")
     };
     let period = 1.0 / 1024.0;

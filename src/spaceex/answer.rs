@@ -6,7 +6,7 @@ use crate::automaton::diagram::{FlowpipePicture, Patch};
 use crate::automaton::trajectory::Sample;
 use crate::guards::Interval;
 use crate::verify::reach::{
-    Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, falsify, prove, refine, runs,
+    Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, Settings, falsify, prove, runs,
 };
 
 use super::{Initial, Problem};
@@ -35,7 +35,7 @@ pub struct Solution {
 
 impl Problem {
     /// Encloses all runs and, where that does not decide, looks for one that comes to a forbidden
-    /// state, and then encloses all in [finer](refine) sets. `progress` is told how long runs have
+    /// state, and then encloses all in [finer](Proof::refined) sets. `progress` is told how long runs have
     /// lasted in what is enclosed; it may end the search.
     ///
     /// # Errors
@@ -50,22 +50,23 @@ impl Problem {
             return Err(crate::verify::reach::ModelError::Initial.into());
         };
         let model = Model::with_uncertain(automaton, &self.uncertain)?;
-        let (forbidden, settings) = (&self.forbidden, &self.settings);
-        let begun = |initial: &Initial| model.clone().beginning_in(&initial.locations);
+        let mut prove = |initial: &Initial, settings: &Settings| {
+            let model = model.clone().beginning_in(&initial.locations)?;
+            let starts = std::slice::from_ref(&initial.states);
+            prove(&model, starts, &self.forbidden, settings, progress)
+        };
         let mut proofs = Vec::new();
         for initial in &self.initial {
-            let starts = std::slice::from_ref(&initial.states);
-            proofs.push(prove(&begun(initial)?, starts, forbidden, settings, progress)?);
+            proofs.push(prove(initial, &self.settings)?);
         }
-        let is_decided = forbidden.is_empty() || proofs.iter().all(Proof::holds);
+        let is_decided = self.forbidden.is_empty() || proofs.iter().all(Proof::holds);
         let nearest = if is_decided { None } else { self.nearest(effort) };
         if nearest.as_ref().is_none_or(|run| !run.is_violation) {
             let coarse = self.initial.iter().zip(proofs);
             let finer = coarse.map(|(initial, proof)| {
-                let starts = std::slice::from_ref(&initial.states);
-                refine(proof, &begun(initial)?, starts, forbidden, settings, progress)
+                proof.refined(&self.settings, |finer| prove(initial, finer))
             });
-            proofs = finer.collect::<Result<_, ReachError>>()?;
+            proofs = finer.collect::<Result<_, _>>()?;
         }
         Ok(Solution { model, proofs, nearest })
     }

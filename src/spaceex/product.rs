@@ -152,7 +152,8 @@ impl<'a> Product<'a> {
             for (instance, place) in self.network.instances.iter().zip(tuple) {
                 clauses.extend(instance.clauses(&instance.component.locations[*place].invariant)?);
             }
-            let bounds = fixed(&[clauses], name).filter(|bounds| bounds.width().is_finite());
+            let bounds = fixed(std::slice::from_ref(&clauses), name)
+                .filter(|bounds| bounds.width().is_finite());
             let Some(bounds) = bounds else {
                 return Ok(Err(format!(
                     "`{name}` has neither a flow nor bounds in location `{location}`: give it a flow, or keep it \

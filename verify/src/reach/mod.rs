@@ -49,7 +49,7 @@ pub use exponential::exponential;
 pub use falsify::{Counterexample, falsify};
 pub use model::{Assignments, Dynamics, Jump, Mode, Model, ModelError, Uncertain};
 pub use polytope::{Bound, Polytope, Template};
-pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, refine, verify};
+pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};
 pub use region::{Conjunction, HalfSpace, Region, RegionError};
 pub use rounding::sum_up;
 pub use search::{Effort, Run, Starts, runs};

@@ -145,6 +145,26 @@ impl Proof {
         self.doubts.is_empty()
             && matches!(self.enclosure.ending, Completion::Horizon | Completion::Everything)
     }
+
+    /// The proof; or a finer one that holds, where it does not. The states in which a guard may hold, which
+    /// jumps carry on as one set for each of the [clusters](Settings::clusters), are covered by ten
+    /// times as many when `prove` is asked again.
+    ///
+    /// # Errors
+    ///
+    /// Those of `prove`.
+    pub fn refined(
+        self,
+        settings: &Settings,
+        prove: impl FnOnce(&Settings) -> Result<Proof, ReachError>,
+    ) -> Result<Proof, ReachError> {
+        let jumps = self.enclosure.visits.iter().any(|visit| visit.depth > 0);
+        if self.holds() || !jumps || self.enclosure.ending == Completion::Stopped {
+            return Ok(self);
+        }
+        let finer = prove(&settings.finer())?;
+        Ok(if finer.holds() { finer } else { self })
+    }
 }
 
 /// Encloses all runs of a model and looks where they meet forbidden states.
@@ -212,29 +232,6 @@ pub fn prove(
     Ok(Proof { enclosure, doubts, clearances })
 }
 
-/// `proof`, or a finer one that holds, where it does not: the states in which a guard may hold, which jumps
-/// carry on as one set for each of the [clusters](Settings::clusters), are covered by ten times as many.
-///
-/// # Errors
-///
-/// As for [`prove`].
-pub fn refine(
-    proof: Proof,
-    model: &Model,
-    starts: &[StateSet],
-    forbidden: &[Forbidden],
-    settings: &Settings,
-    progress: &mut dyn FnMut(Interval) -> ControlFlow<()>,
-) -> Result<Proof, ReachError> {
-    let jumps = proof.enclosure.visits.iter().any(|visit| visit.depth > 0);
-    let is_stopped = proof.enclosure.ending == Completion::Stopped;
-    if proof.holds() || !jumps || is_stopped {
-        return Ok(proof);
-    }
-    let finer = prove(model, starts, forbidden, &settings.finer(), progress)?;
-    Ok(if finer.holds() { finer } else { proof })
-}
-
 /// Whether there are sets of initial states, and all are sets of states of a model.
 pub(super) fn check_starts(model: &Model, starts: &[StateSet]) -> Result<(), ReachError> {
     if starts.is_empty() {
@@ -254,7 +251,7 @@ pub(super) fn check_starts(model: &Model, starts: &[StateSet]) -> Result<(), Rea
 /// Whether a run of `automaton` that begins in one of `starts` comes to a forbidden state.
 ///
 /// First all runs are enclosed; where that does not decide, single runs are searched for one that
-/// does, and then all are enclosed in [finer](refine) sets.
+/// does, and then all are enclosed in [finer](Proof::refined) sets.
 ///
 /// # Errors
 ///
@@ -305,6 +302,7 @@ pub fn verify<L: Location + Sync, E: Event + Sync, S: Coordinates>(
     if let Some(found) = found.filter(|found| found.is_violation) {
         return Ok(Answer::Violated(Box::new(found)));
     }
-    let proof = refine(proof, &model, starts, forbidden, settings, progress)?;
+    let proof =
+        proof.refined(settings, |finer| prove(&model, starts, forbidden, finer, progress))?;
     Ok(if proof.holds() { Answer::Holds(proof) } else { Answer::Undecided(proof) })
 }
