@@ -158,11 +158,12 @@ impl Proof {
         settings: &Settings,
         prove: impl FnOnce(&Settings) -> Result<Proof, ReachError>,
     ) -> Result<Proof, ReachError> {
-        let jumps = self.enclosure.visits.iter().any(|visit| visit.depth > 0);
-        if self.holds() || !jumps || self.enclosure.ending == Completion::Stopped {
+        let Enclosure { visits, ending } = &self.enclosure;
+        let jumps = visits.iter().any(|visit| visit.depth > 0);
+        if self.holds() || !jumps || *ending == Completion::Stopped {
             return Ok(self);
         }
-        let finer = prove(&settings.finer())?;
+        let finer = prove(&settings.finer(visits.iter().map(|visit| visit.segments.len()).sum()))?;
         Ok(if finer.holds() { finer } else { self })
     }
 }

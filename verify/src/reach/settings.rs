@@ -87,10 +87,11 @@ impl Settings {
         Interval::new(elapsed.lower(), elapsed.upper().min(self.horizon)).ok()
     }
 
-    /// More sets at guards, and fewer in all, so that a second attempt takes no longer than the first may.
-    pub(super) fn finer(&self) -> Self {
-        let (clusters, segment_limit) = (10 * self.clusters, self.segment_limit / 5);
-        Settings { clusters, segment_limit, ..self.clone() }
+    /// Ten times as many sets at guards, for a second attempt after one of so many segments, which takes
+    /// about ten times as long at most.
+    pub(super) fn finer(&self, segments: usize) -> Self {
+        let segment_limit = self.segment_limit.min(10 * segments);
+        Settings { clusters: 10 * self.clusters, segment_limit, ..self.clone() }
     }
 
     /// Says which setting makes no sense, if one does.
