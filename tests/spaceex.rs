@@ -47,9 +47,11 @@ fn a_component_with_bound_constants_is_read_and_answered() {
 #[test]
 fn where_merged_sets_decide_nothing_finer_ones_are_tried() {
     let dropped = BALL[1].replace("10 <= x <= 10.2", "1 <= x <= 1.2");
-    let ball =
-        problem([BALL[0], &dropped.replace("x >= 10.25", "x >= 1.25").replace("= 6", "= 2")]);
-    assert_eq!(verdict(&ball), Verdict::Holds);
+    let dropped = dropped.replace("x >= 10.25", "x >= 1.25");
+    for horizon in ["time-horizon = 2", "time-horizon = 3"] {
+        let ball = problem([BALL[0], &dropped.replace("time-horizon = 6", horizon)]);
+        assert_eq!(verdict(&ball), Verdict::Holds, "{horizon}");
+    }
 }
 
 /// Two components that tick together, an input within bounds, a value within bounds after a jump, and

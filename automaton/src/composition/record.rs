@@ -105,11 +105,14 @@ impl Record {
         self.numbers += first.len() as u64 + OVERHEAD;
         let since = Moment::from(at.t);
         self.strands[number].stretches.push(Stretch::at(at.after_jump(), since, first));
-        let Taken { label, moves, .. } = taken.clone();
-        let by = match composition.components.len() {
-            1 => String::new(),
-            _ => composition.names_of(&moves).collect::<Vec<_>>().join(", "),
-        };
+        let (label, moves) = (taken.label.clone(), taken.moves.clone());
+        let mut by = String::new();
+        if composition.components.len() > 1 {
+            for name in composition.names_of(&moves) {
+                let comma = if by.is_empty() { "" } else { ", " };
+                by.extend([comma, name]);
+            }
+        }
         self.jumps.push(JumpRecord { at, label, by, moves });
     }
 

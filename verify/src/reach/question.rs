@@ -147,8 +147,8 @@ impl Proof {
     }
 
     /// The proof; or a finer one that holds, where it does not. The states in which a guard may hold, which
-    /// jumps carry on as one set for each of the [clusters](Settings::clusters), are covered by ten
-    /// times as many when `prove` is asked again.
+    /// jumps carry on as one set for each of the [clusters](Settings::clusters), are covered by twice
+    /// and then ten times as many when `prove` is called again.
     ///
     /// # Errors
     ///
@@ -156,17 +156,27 @@ impl Proof {
     pub fn refined(
         self,
         settings: &Settings,
-        prove: impl FnOnce(&Settings) -> Result<Proof, ReachError>,
+        mut prove: impl FnMut(&Settings) -> Result<Proof, ReachError>,
     ) -> Result<Proof, ReachError> {
         let Enclosure { visits, ending } = &self.enclosure;
         let jumps = visits.iter().any(|visit| visit.depth > 0);
         if self.holds() || !jumps || *ending == Completion::Stopped {
             return Ok(self);
         }
-        let finer = prove(&settings.finer(visits.iter().map(|visit| visit.segments.len()).sum()))?;
-        Ok(if finer.holds() { finer } else { self })
+        let segments = visits.iter().map(|visit| visit.segments.len()).sum();
+        for factor in FINER {
+            let finer = prove(&settings.finer(factor, segments))?;
+            if finer.holds() {
+                return Ok(finer);
+            }
+        }
+        Ok(self)
     }
 }
+
+/// How many times as many sets cover the states at guards in further attempts. More sets are finer, and
+/// lead to more of them at each jump.
+const FINER: [usize; 2] = [2, 10];
 
 /// Encloses all runs of a model and looks where they meet forbidden states.
 ///

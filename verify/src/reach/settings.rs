@@ -46,6 +46,9 @@ pub struct Settings {
     pub tolerance: f64,
 }
 
+/// How many segments another attempt may take, however short the first was.
+const ATTEMPT: usize = 20_000;
+
 /// A setting makes no sense.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("`{setting}` is {value}, and has to be {expected}")]
@@ -87,11 +90,11 @@ impl Settings {
         Interval::new(elapsed.lower(), elapsed.upper().min(self.horizon)).ok()
     }
 
-    /// Ten times as many sets at guards, for a second attempt after one of so many segments, which takes
-    /// about ten times as long at most.
-    pub(super) fn finer(&self, segments: usize) -> Self {
-        let segment_limit = self.segment_limit.min(10 * segments);
-        Settings { clusters: 10 * self.clusters, segment_limit, ..self.clone() }
+    /// More sets at guards, for another attempt after one that took this many segments, which takes a few
+    /// times as long at most.
+    pub(super) fn finer(&self, factor: usize, segments: usize) -> Self {
+        let segment_limit = self.segment_limit.min((4 * segments).max(ATTEMPT));
+        Settings { clusters: factor * self.clusters, segment_limit, ..self.clone() }
     }
 
     /// Says which setting makes no sense, if one does.

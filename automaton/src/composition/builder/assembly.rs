@@ -147,7 +147,7 @@ impl CompositionBuilder {
             let own = part.blueprint.coordinates.iter().copied();
             part.signals_in(own.zip(full_names.iter().map(String::as_str)))
         };
-        self.parts.iter().flat_map(of_part).collect()
+        self.parts.iter().filter(|part| !part.signals.is_empty()).flat_map(of_part).collect()
     }
 
     /// Gives components the formulas of the signals to which their inputs are connected, and connects
@@ -174,7 +174,7 @@ impl CompositionBuilder {
         for part in &mut self.parts {
             self.connections.extend(part.wire(&formulas)?);
         }
-        Ok(())
+        self.check_names()
     }
 
     /// An input of formulas has one source, is read by nobody, and is changed by nothing.
