@@ -54,6 +54,21 @@ fn where_merged_sets_decide_nothing_finer_ones_are_tried() {
     }
 }
 
+/// Runs may jump to and fro at any time and as often as they like: all of what follows is known once both
+/// locations have been visited.
+#[test]
+fn jumps_without_end_lead_to_what_is_known() {
+    let model = r#"<sspaceex><component id="switch">
+        <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
+        <location id="1" name="off"><flow>x' == 0</flow></location>
+        <location id="2" name="on"><flow>x' == 0</flow></location>
+        <transition source="1" target="2"/>
+        <transition source="2" target="1"/>
+    </component></sspaceex>"#;
+    let asked = "initially = \"x == 1 & loc()==off\"\nforbidden = \"x >= 2\"\ntime-horizon = 20\nsampling-time = 0.1\n";
+    assert_eq!(verdict(&problem([model, asked])), Verdict::Holds);
+}
+
 /// Two components that tick together, an input within bounds, a value within bounds after a jump, and
 /// no word on where the tank begins: in both of its locations.
 #[test]
