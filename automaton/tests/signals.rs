@@ -116,6 +116,8 @@ fn signals_are_connected_carried_and_written() {
     assert!((value("display.twice", 0.3) - 4.0 * exact(0.0)).abs() < 1e-9);
     assert!((value("display.twice", 0.4) - 4.0 * exact(0.25)).abs() < 1e-9);
 
+    let first = run.jumps()[0].to_string();
+    assert!(first.starts_with("(0 s, 0) meter, clock of meter.sample, "), "{first}");
     let product = both.product().expect("it is data");
     assert!(product.signals().any(|(name, _)| name == "meter.twice"));
 
@@ -133,11 +135,11 @@ fn signals_that_depend_on_themselves_are_refused_by_name() {
     let [a, b, c] = ["a", "b", "c"].map(variable);
     let begin = || Automaton::<Place, Cue, Pair>::starting_in(Running);
     let built = begin().signal("c", &a + 1).signal("a", &b + 1).signal("b", a.sin()).build();
-    let error = built.err().expect("it is a cycle");
+    let error = built.expect_err("it is a cycle");
     assert!(error.to_string().contains("`a` → `b` → `a`"), "{error}");
-    let error = begin().signal("x", constant(1.0)).build().err().expect("x is a coordinate");
+    let error = begin().signal("x", constant(1.0)).build().expect_err("x is a coordinate");
     assert!(matches!(error, BuildError::SignalNameTaken { .. }), "{error}");
-    let error = begin().signal("a", &c).build().err().expect("there is no c");
+    let error = begin().signal("a", &c).build().expect_err("there is no c");
     assert!(matches!(error, BuildError::UnknownVariable { place: "a", .. }), "{error}");
 }
 
