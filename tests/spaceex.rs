@@ -689,12 +689,13 @@ fn an_input_may_have_other_bounds_in_other_locations() {
             <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
             <param name="t" type="real" d1="1" d2="1" local="false" dynamics="any"/>
             <param name="u" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
+            <param name="y" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
             <location id="1" name="slow">
-                <invariant>-1 &lt;= u &amp; u {bounds} 1 &amp; t &lt;= 1</invariant>
+                <invariant>y == x + u &amp; -1 &lt;= u &amp; u {bounds} 1 &amp; t &lt;= 1</invariant>
                 <flow>x' == u &amp; t' == 1</flow>
             </location>
             <location id="2" name="fast">
-                <invariant>2 &lt;= u &amp; u &lt;= 3 &amp; t &lt;= 2</invariant>
+                <invariant>y == x + u &amp; 2 &lt;= u &amp; u &lt;= 3 &amp; t &lt;= 2</invariant>
                 <flow>x' == u &amp; t' == 1</flow>
             </location>
             <transition source="1" target="2"><guard>t &gt;= 1</guard></transition>

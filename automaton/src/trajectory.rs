@@ -378,6 +378,11 @@ impl Trajectory {
                 "every flow needs a value for each of its variables, in order of time",
             ));
         }
+        let is_variable = |name: &str| self.variables.iter().any(|variable| variable == name);
+        let mut read = self.signals.iter().flat_map(|(_, formula)| formula.variables());
+        if !read.all(is_variable) {
+            return Err(wrong("signals must be formulas of the variables"));
+        }
         let mut slots: Vec<usize> =
             self.strands.iter().flat_map(|strand| strand.slots.iter().copied()).collect();
         slots.sort_unstable();

@@ -69,6 +69,9 @@ fn signals_are_read_in_guards_flows_invariants_and_resets_and_are_recorded() {
     let mut file = Vec::new();
     run.write(&mut file).expect("it is written");
     assert_eq!(Trajectory::read(&file[..]).expect("it is a trajectory"), run);
+    let text = String::from_utf8(file).expect("it is text").replace("3 · i", "3 · u");
+    let fault = Trajectory::read(text.as_bytes()).expect_err("u is no variable");
+    assert!(fault.to_string().contains("signals must be formulas of the variables"), "{fault}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod question;
 use std::collections::BTreeMap;
 
 use crate::automaton::{Automaton, Coordinate, Name, Record};
-use crate::guards::{Interval, Substitution, constant, variable};
+use crate::guards::{Expression, Interval, Substitution, constant, variable};
 use crate::verify::reach::Uncertain;
 
 use super::configuration::Options;
@@ -282,7 +282,10 @@ impl<'a> Product<'a> {
         for (name, values) in self.constants.iter().chain(&self.inputs) {
             builder = builder.parameter(name, values.midpoint());
         }
-        for (name, formula) in &self.network.outputs {
+        // An output of an input with other bounds in other locations has no formula for all of them.
+        let is_one =
+            |formula: &Expression| formula.variables().into_iter().all(|name| self.is_number(name));
+        for (name, formula) in self.network.outputs.iter().filter(|(_, it)| is_one(it)) {
             builder = builder.signal(name, formula);
         }
         for (tuple, name) in self.tuples.iter().zip(&self.names) {
