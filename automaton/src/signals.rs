@@ -15,30 +15,22 @@ pub(crate) type Signal = (String, Expression);
 ///
 /// The names along a cycle, the first of them again at its end.
 pub(crate) fn resolved(signals: &[Signal]) -> Result<Vec<Signal>, Vec<String>> {
-    let mut formulas = Substitution::default();
-    let mut found: Vec<Option<Expression>> = vec![None; signals.len()];
-    while found.iter().any(Option::is_none) {
-        let is_open = |name: &str| {
-            let mut open = signals.iter().zip(&found).filter(|(_, found)| found.is_none());
-            open.any(|((signal, _), _)| signal == name)
-        };
-        let is_ready = |formula: &Expression| !formula.variables().into_iter().any(is_open);
-        let ready = signals.iter().zip(&found).map(|((_, formula), found)| match found {
-            None if is_ready(formula) => Some(formula.substitute(&formulas)),
-            known => known.clone(),
-        });
-        let ready: Vec<Option<Expression>> = ready.collect();
-        if ready == found {
-            let open = signals.iter().zip(&found).filter(|(_, found)| found.is_none());
-            return Err(cycle(&open.map(|(signal, _)| signal).collect::<Vec<_>>()));
+    let mut found: Vec<Signal> = Vec::new();
+    let mut open: Vec<&Signal> = signals.iter().collect();
+    while !open.is_empty() {
+        let is_open = |name: &str| open.iter().any(|(signal, _)| signal == name);
+        let (waiting, ready): (Vec<&Signal>, Vec<&Signal>) =
+            open.iter().partition(|(_, formula)| formula.variables().into_iter().any(is_open));
+        if ready.is_empty() {
+            return Err(cycle(&waiting));
         }
-        found = ready;
-        formulas = Substitution::new(
-            signals.iter().zip(&found).filter_map(|((name, _), it)| Some((name, it.clone()?))),
-        );
+        let formulas = Substitution::new(found.iter().cloned());
+        let resolved = |(name, formula): &Signal| (name.clone(), formula.substitute(&formulas));
+        found.extend(ready.into_iter().map(resolved));
+        open = waiting;
     }
-    let names = signals.iter().map(|(name, _)| name.clone());
-    Ok(names.zip(found.into_iter().flatten()).collect())
+    found.sort_by_key(|(name, _)| signals.iter().position(|(signal, _)| signal == name));
+    Ok(found)
 }
 
 /// A way through signals of which each depends on another, up to where it comes back to itself.
