@@ -1,5 +1,6 @@
 //! Everything that a model usually needs: `use pleach::prelude::*;`.
 
+pub use crate::MainError;
 pub use pleach_automaton::composition::Channel;
 pub use pleach_automaton::{
     Automaton, BuildError, Composition, CompositionError, Coordinates, Flow, Policy, Reason, Reset,

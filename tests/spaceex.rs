@@ -42,6 +42,33 @@ fn a_component_with_bound_constants_is_read_and_answered() {
     assert_eq!(verdict(&problem([BALL[0], &low])), Verdict::Violated);
 }
 
+/// Sets at the floor are merged into one, from which a ball of half a metre more or less rises higher than
+/// it was dropped: the proof needs finer ones.
+#[test]
+fn where_merged_sets_decide_nothing_finer_ones_are_tried() {
+    let dropped = BALL[1].replace("10 <= x <= 10.2", "1 <= x <= 1.2");
+    let dropped = dropped.replace("x >= 10.25", "x >= 1.25");
+    for horizon in ["time-horizon = 2", "time-horizon = 3"] {
+        let ball = problem([BALL[0], &dropped.replace("time-horizon = 6", horizon)]);
+        assert_eq!(verdict(&ball), Verdict::Holds, "{horizon}");
+    }
+}
+
+/// Runs may jump to and fro at any time and as often as they like: all of what follows is known once both
+/// locations have been visited.
+#[test]
+fn jumps_without_end_lead_to_what_is_known() {
+    let model = r#"<sspaceex><component id="switch">
+        <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
+        <location id="1" name="off"><flow>x' == 0</flow></location>
+        <location id="2" name="on"><flow>x' == 0</flow></location>
+        <transition source="1" target="2"/>
+        <transition source="2" target="1"/>
+    </component></sspaceex>"#;
+    let asked = "initially = \"x == 1 & loc()==off\"\nforbidden = \"x >= 2\"\ntime-horizon = 20\nsampling-time = 0.1\n";
+    assert_eq!(verdict(&problem([model, asked])), Verdict::Holds);
+}
+
 /// Two components that tick together, an input within bounds, a value within bounds after a jump, and
 /// no word on where the tank begins: in both of its locations.
 #[test]
@@ -80,7 +107,8 @@ fn write(problem: &Problem) -> Written {
 /// What is written reads back as the same automaton and the same question.
 #[test]
 fn what_is_written_is_read_back() {
-    for files in [BALL, TIMERS, RELAY] {
+    let tank = [TANK, "initially = \"x == 0\"\nforbidden = \"y >= 6\"\ntime-horizon = 10\n"];
+    for files in [BALL, TIMERS, RELAY, tank] {
         let first = problem(files);
         let written = write(&first);
         let second = problem([&written.model, &written.configuration]);
@@ -399,7 +427,7 @@ fn inputs_have_bounds_in_every_location() {
     assert_eq!(verdict(&problem([&two_locations(unit, unit), configuration])), Verdict::Violated);
     let free = refusal(&two_locations(unit, "x&lt;=9"), configuration);
     assert!(free.contains("nor bounds in location `B`"), "{free}");
-    let other = refusal(&two_locations(unit, "5&lt;=u &amp; u&lt;=6"), configuration);
+    let other = refusal(&two_locations(unit, "5&lt;=u &amp; u&lt;6"), configuration);
     assert!(other.contains("[0, 1] in location `A`, and in [5, 6] in `B`"), "{other}");
 }
 
@@ -620,10 +648,8 @@ fn inner_variables_may_be_named_briefly() {
     assert_eq!(verdict(&problem([RELAY[0], &brief])), Verdict::Holds);
 }
 
-/// An output is what the invariants say, in invariants, guards, flows and questions.
-#[test]
-fn outputs_stand_for_their_formulas() {
-    let model = r#"<sspaceex><component id="tank">
+/// The outputs y and z of a tank.
+const TANK: &str = r#"<sspaceex><component id="tank">
         <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
         <param name="y" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
         <param name="z" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
@@ -632,17 +658,62 @@ fn outputs_stand_for_their_formulas() {
             <flow>x' == z - x</flow>
         </location>
     </component></sspaceex>"#;
+
+/// An output is what the invariants say, in invariants, guards, flows and questions, and a signal of runs.
+#[test]
+fn outputs_stand_for_their_formulas() {
     let asked = |forbidden: &str| {
         let configuration = format!(
             "initially = \"x == 0\"\nforbidden = \"{forbidden}\"\noutput-variables = \"x, y\"\ntime-horizon = 10\n"
         );
-        problem([model, &configuration])
+        problem([TANK, &configuration])
     };
+    let tank = asked("y >= 5.1");
+    assert!(tank.automata[0].signals().map(|(name, _)| name).eq(["y", "z"]));
+    let run = tank.automata[0].run(1.0).unwrap();
+    assert!((run.value("y", 1.0).unwrap() - 3.0).abs() < 1e-12);
     // x′ is 1, up to where y is 5.
     assert_eq!(asked("y >= 5.1").automata[0].names(), ["x"]);
     assert_eq!(verdict(&asked("y >= 5.1")), Verdict::Holds);
     assert_eq!(verdict(&asked("x >= 2.1")), Verdict::Holds);
     assert_eq!(verdict(&asked("y >= 4.5")), Verdict::Violated);
+}
+
+/// The input is within ±1 at first, and from the jump at 1 s on between 2 and 3: x is at most 1 + 3, and can
+/// be nearly that.
+#[test]
+fn an_input_may_have_other_bounds_in_other_locations() {
+    let model = |bounds: &str| {
+        format!(
+            r#"<sspaceex><component id="s">
+            <param name="x" type="real" d1="1" d2="1" local="false" dynamics="any"/>
+            <param name="t" type="real" d1="1" d2="1" local="false" dynamics="any"/>
+            <param name="u" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
+            <param name="y" type="real" d1="1" d2="1" local="false" dynamics="any" controlled="false"/>
+            <location id="1" name="slow">
+                <invariant>y == x + u &amp; -1 &lt;= u &amp; u {bounds} 1 &amp; t &lt;= 1</invariant>
+                <flow>x' == u &amp; t' == 1</flow>
+            </location>
+            <location id="2" name="fast">
+                <invariant>y == x + u &amp; 2 &lt;= u &amp; u &lt;= 3 &amp; t &lt;= 2</invariant>
+                <flow>x' == u &amp; t' == 1</flow>
+            </location>
+            <transition source="1" target="2"><guard>t &gt;= 1</guard></transition>
+        </component></sspaceex>"#
+        )
+    };
+    let asked = |forbidden: &str| {
+        format!(
+            "initially = \"x == 0 & t == 0 & loc()==slow\"\nforbidden = \"{forbidden}\"\ntime-horizon = 3\n"
+        )
+    };
+    let verdict_of = |forbidden: &str| verdict(&problem([&model("&lt;="), &asked(forbidden)]));
+    assert_eq!(verdict_of("x >= 4.01"), Verdict::Holds);
+    assert_eq!(verdict_of("x <= 0.9 & t >= 2"), Verdict::Holds);
+    assert_eq!(verdict_of("x >= 3.9"), Verdict::Violated);
+    let said = refusal(&model("&lt;"), &asked("x >= 5"));
+    assert!(said.contains("some of its bounds are strict"), "{said}");
+    assert!(refusal(&model("&lt;="), &asked("u >= 5")).contains("`u` is no variable"));
 }
 
 /// The time to read a model grows with its length, and not with its square.

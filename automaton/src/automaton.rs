@@ -6,7 +6,9 @@ use std::ops::RangeInclusive;
 
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
-use pleach_guards::{EvaluationError, Guard, Predicate, Substitution, Valuation};
+use pleach_guards::{
+    EvaluationError, Expression, Guard, Predicate, Substitution, Valuation, constant,
+};
 use thiserror::Error;
 
 use crate::builder::Builder;
@@ -16,8 +18,9 @@ use crate::flow::Flow;
 use crate::law::Command;
 use crate::located::{Holds, Place};
 use crate::observed::{self, Exclusion, Watch};
-use crate::outline::{numbers_of, range_of};
+use crate::outline::range_of;
 use crate::reset::Reset;
+use crate::signals::Signal;
 
 pub use step::Step;
 
@@ -73,6 +76,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) known: Option<Vec<&'static str>>,
     /// Names that stand for numbers, with these.
     pub(crate) parameters: Vec<(String, f64)>,
+    /// Names of formulas of coordinates and parameters, with these.
+    pub(crate) signals: Vec<Signal>,
     /// The coordinates of which no other component may say how they move.
     pub(crate) own: Vec<&'static str>,
     pub(crate) locations: Vec<L>,
@@ -213,9 +218,14 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         self.parameters.iter().map(|(name, value)| (name.as_str(), *value))
     }
 
+    /// The signals, each with its formula of coordinates and parameters.
+    pub fn signals(&self) -> impl ExactSizeIterator<Item = (&str, &Expression)> {
+        self.signals.iter().map(|(name, formula)| (name.as_str(), formula))
+    }
+
     /// The parameters as what to put in the place of their names.
     pub(crate) fn numbers(&self) -> Substitution {
-        numbers_of(&self.parameters)
+        Substitution::new(self.parameters().map(|(name, value)| (name, constant(value))))
     }
 
     /// The node of `location`, unless the automaton lacks it. Enums are small: looking through them
@@ -310,6 +320,9 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
             return changed;
         }
         changed.parameters.clear();
+        for (_, formula) in &mut changed.signals {
+            *formula = formula.substitute(&numbers);
+        }
         for transition in changed.graph.edge_weights_mut() {
             let guard = transition.guard.predicate().substitute(&numbers);
             transition.guard = Guard::new(transition.guard.name(), guard);

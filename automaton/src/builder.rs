@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 
 use petgraph::graph::DiGraph;
 use pleach_discrete::{Event, Location, Row, TransitionTable};
-use pleach_guards::{Guard, Predicate, Valuation};
+use pleach_guards::{Expression, Guard, Predicate, Substitution, Valuation};
 
 pub use error::BuildError;
 
@@ -22,6 +22,7 @@ use crate::lists::{mapped, names_of, place_of};
 use crate::located::Transfer;
 use crate::observed::{Exclusion, Observed, Watch};
 use crate::reset::Reset;
+use crate::signals::resolved;
 use draft::{Draft, Said, Vocabulary};
 use parts::{Given, Parts};
 
@@ -46,6 +47,8 @@ pub struct Builder<L, E, S> {
     exclusion: Exclusion<S>,
     /// How a guard is looked up by numbers, where the state has them.
     watch: fn(&Predicate) -> Option<Watch<S>>,
+    /// A reset with formulas in the place of signals, where the state has coordinates.
+    substitute: fn(&Reset<S>, &Substitution) -> Reset<S>,
 }
 
 impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
@@ -61,6 +64,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             initial_state: None,
             exclusion: Exclusion::none(),
             watch: |_| None,
+            substitute: |reset, _| reset.clone(),
         };
         for row in table.rows() {
             builder.add_row(row);
@@ -132,6 +136,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     /// The first [`BuildError`] found: in the vocabularies, the table, the guards, then in what
     /// is said about the locations.
     pub fn build(mut self) -> Result<Automaton<L, E, S>, BuildError> {
+        self.resolve_signals()?;
         let mut draft = self.draft()?;
         draft.check()?;
         Ok(Automaton {
@@ -147,10 +152,41 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             ranges: take(&mut self.parts.ranges),
             known: self.parts.known.take(),
             parameters: take(&mut self.parts.parameters),
+            signals: take(&mut self.parts.signals),
             own: Vec::new(),
             tally: None,
             exclusion: self.exclusion.clone(),
         })
+    }
+
+    /// Puts formulas in the place of signals, wherever they are named.
+    fn resolve_signals(&mut self) -> Result<(), BuildError> {
+        let Builder { parts, flows, resets, substitute, .. } = self;
+        if parts.signals.is_empty() {
+            return Ok(());
+        }
+        parts.signals =
+            resolved(&parts.signals).map_err(|signals| BuildError::SignalCycle { signals })?;
+        let formulas = Substitution::new(parts.signals.iter().cloned());
+        for reset in resets.iter_mut() {
+            *reset = substitute(reset, &formulas);
+        }
+        for given in parts.given_mut() {
+            let Given { guard, assignments, reset } = given;
+            *guard = Guard::new(guard.name(), guard.predicate().substitute(&formulas));
+            *assignments = resets[*reset].shared_assignments();
+        }
+        for (flow, (_, rates)) in flows.iter_mut().zip(&mut parts.flows) {
+            *flow = flow.substitute(&formulas);
+            *rates = flow.shared_rates();
+        }
+        for (_, invariant) in &mut parts.invariants {
+            *invariant = invariant.substitute(&formulas);
+        }
+        for rate in &mut parts.throughout {
+            *rate = rate.substitute(&formulas);
+        }
+        Ok(())
     }
 
     /// The automaton, after a look at any one state of the model, whose values do not matter:
@@ -267,6 +303,8 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
         builder.exclusion = automaton.exclusion.clone();
         builder.parts.known = automaton.known.clone();
         builder.parts.parameters = automaton.parameters.clone();
+        builder.parts.signals = automaton.signals.clone();
+        builder.substitute = Reset::substitute;
         builder.parts.ranges = automaton.ranges.clone();
         builder
     }
@@ -282,6 +320,15 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
     /// [`Automaton::with`](crate::Automaton::with) changes. Texts and drawings show the name.
     pub fn parameter(mut self, name: &str, value: f64) -> Self {
         self.parts.parameters.push((name.to_owned(), value));
+        self
+    }
+
+    /// In all formulas of the model `name` stands for `formula`, of coordinates, parameters and other
+    /// signals: an output, or what several guards and flows read. Runs record it, and
+    /// [compositions](crate::CompositionBuilder::connect) connect it, like a coordinate.
+    pub fn signal(mut self, name: &str, formula: impl Into<Expression>) -> Self {
+        self.parts.signals.push((name.to_owned(), formula.into()));
+        self.substitute = Reset::substitute;
         self
     }
 

@@ -122,7 +122,7 @@ impl Coverage {
     ) -> Result<Coverage, CoverageError> {
         const NAME: &str = "automaton";
         let failed = |source| guard_error(NAME, source);
-        let blueprint = automaton.blueprint().map_err(failed)?;
+        let blueprint = automaton.blueprint(&[]).map_err(failed)?;
         let events: Vec<String> = blueprint.events.iter().map(ToString::to_string).collect();
         let Parts { locations, transitions } = Parts::of(&blueprint, &events).map_err(failed)?;
         let slots = (0..automaton.names().len()).collect();

@@ -233,8 +233,8 @@ pub enum Reason<F> {
     /// stands for a time to the next jump that is too short to change t, negative, or NaN.
     Blocked,
     /// More rounds of jumps at one instant than allowed, or at instants only a few spacings of the
-    /// numbers apart.
-    JumpLimit,
+    /// numbers apart; of a composition with the last of them.
+    JumpLimit(Option<LastJump>),
     /// As for a jump limit, in a composition of which it is known why: the flows of two locations
     /// lead to the boundary between them, so that neither can be followed.
     Sliding(Sliding),
@@ -242,6 +242,15 @@ pub enum Reason<F> {
     Limit(Limit),
     /// Jumps come ever faster and add up at an instant before the horizon.
     Zeno(Zeno),
+}
+
+/// The last jump of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LastJump {
+    /// The component; of several that jump together the first.
+    pub component: usize,
+    /// The location to which it leads, as a number.
+    pub location: usize,
 }
 
 /// Two locations of a component whose flows both lead to the boundary between them. A solution in
@@ -280,7 +289,7 @@ impl Reason<Infallible> {
             Reason::Finished(never) | Reason::Interrupted(never) => match never {},
             Reason::Horizon => Reason::Horizon,
             Reason::Blocked => Reason::Blocked,
-            Reason::JumpLimit => Reason::JumpLimit,
+            Reason::JumpLimit(last) => Reason::JumpLimit(last),
             Reason::Sliding(sliding) => Reason::Sliding(sliding),
             Reason::Limit(limit) => Reason::Limit(limit),
             Reason::Zeno(zeno) => Reason::Zeno(zeno),
@@ -355,7 +364,7 @@ impl Executor {
                 has_jumped = true;
                 rounds += 1;
                 if rounds > self.round_limit {
-                    break Reason::JumpLimit;
+                    break Reason::JumpLimit(None);
                 }
                 continue;
             }

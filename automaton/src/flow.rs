@@ -62,6 +62,10 @@ impl<S> Rate<S> {
         Rate::new(self.coordinate, self.rate)
     }
 
+    pub(crate) fn substitute(&self, substitution: &Substitution) -> Self {
+        Rate::new(self.coordinate, self.rate.substitute(substitution))
+    }
+
     /// The name of the coordinate.
     pub fn coordinate(&self) -> &'static str {
         self.coordinate
@@ -226,8 +230,7 @@ fn listed(rates: &[Rate]) -> String {
 }
 
 fn substituted(rates: &[Rate], substitution: &Substitution) -> Vec<Rate> {
-    let changed = |one: &Rate| Rate::new(one.coordinate, one.rate.substitute(substitution));
-    rates.iter().map(changed).collect()
+    rates.iter().map(|rate| rate.substitute(substitution)).collect()
 }
 
 // Written by hand, because derives would ask the same of S.

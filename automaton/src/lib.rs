@@ -42,6 +42,7 @@ pub mod observed;
 mod outline;
 mod parallel;
 pub mod reset;
+mod signals;
 pub mod sliding;
 mod sweep;
 pub mod time;
@@ -60,7 +61,7 @@ pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
 pub use executor::{
-    Ending, Executor, InvalidLimit, Limit, Observer, Reason, Round, Sliding, System,
+    Ending, Executor, InvalidLimit, LastJump, Limit, Observer, Reason, Round, Sliding, System,
 };
 pub use flow::{Flow, InvalidMatrix, Rate};
 pub use located::{Current, DataOf, Holds, Place, Transfer};
@@ -73,7 +74,7 @@ pub use sweep::sweep;
 pub use time::HybridTime;
 
 pub use trace::{Participants, Trace, TraceEntry};
-pub use trajectory::{Doubt, Trajectory, Why};
+pub use trajectory::{Doubt, NoValue, Trajectory, Why};
 pub use zeno::Zeno;
 
 /// What signatures name: matrices of linear flows and vectors as states, the

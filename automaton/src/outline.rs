@@ -16,6 +16,7 @@ use crate::flow::{Flow, Rate};
 use crate::law::Command;
 use crate::lists::{names_of, place_of};
 use crate::reset::{Assignment, listed};
+use crate::signals::Signal;
 
 pub(crate) struct Outline<'a> {
     /// By location.
@@ -112,9 +113,12 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
 }
 
 impl Outline<'_> {
-    /// The parameters as what to put in the place of their names.
-    pub(crate) fn numbers(&self) -> Substitution {
-        numbers_of(self.parameters)
+    /// What stands for parameters and for coordinates that are wired. None if there are neither: formulas
+    /// then stay as they are, and functions the ones they were.
+    pub(crate) fn formulas(&self, wiring: &[Signal]) -> Option<Substitution> {
+        let numbers = self.parameters.iter().map(|(name, value)| (name, constant(*value)));
+        let formulas = numbers.chain(wiring.iter().map(|(name, formula)| (name, formula.clone())));
+        (!(self.parameters.is_empty() && wiring.is_empty())).then(|| Substitution::new(formulas))
     }
 
     /// The range that the model declares for a variable; without a declaration, all numbers.
@@ -158,11 +162,6 @@ impl fmt::Display for Effect<'_> {
             Effect::Function(name) => formatter.write_str(name),
         }
     }
-}
-
-/// Parameters as what to put in the place of their names.
-pub(crate) fn numbers_of(parameters: &[(String, f64)]) -> Substitution {
-    Substitution::new(parameters.iter().map(|(name, value)| (name, constant(*value))))
 }
 
 /// The range that is declared for a variable; without a declaration, all numbers.

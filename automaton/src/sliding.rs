@@ -46,7 +46,7 @@
 //! let trajectory = sign.with_sliding()?.run(3.0)?;
 //! assert_eq!(trajectory.jumps().len(), 1);
 //! assert_eq!(trajectory.location(0, 2.0), Some("right | left"));
-//! assert_eq!(trajectory.value("x", 3.0), Some(0.0));
+//! assert_eq!(trajectory.value("x", 3.0), Ok(0.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

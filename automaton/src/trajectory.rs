@@ -7,7 +7,7 @@ mod strand;
 use std::fmt;
 use std::io;
 
-use pleach_guards::Valuation;
+use pleach_guards::{EvaluationError, Expression, Valuation};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -18,6 +18,7 @@ pub(crate) use strand::{Strand, Stretch};
 use crate::composition::Move;
 use crate::composition::{Failure, Settings};
 use crate::executor::Ending;
+use crate::signals::Signal;
 use crate::time::HybridTime;
 
 /// The run of a composition: a hybrid arc x(t, j) with the locations along it.
@@ -46,7 +47,7 @@ use crate::time::HybridTime;
 ///     .build()?;
 /// let trajectory = lamp.run(4.0)?;
 ///
-/// assert_eq!(trajectory.value("clock", 1.5), Some(1.5));
+/// assert_eq!(trajectory.value("clock", 1.5)?, 1.5);
 /// assert_eq!(trajectory.location(0, 3.0), Some("dark"));
 /// assert_eq!(trajectory.jumps()[0].to_string(), "(2.5 s, 0) elapsed");
 ///
@@ -58,6 +59,8 @@ use crate::time::HybridTime;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trajectory {
     pub(crate) variables: Vec<String>,
+    /// Names of formulas of the variables, with these.
+    pub(crate) signals: Vec<Signal>,
     pub(crate) components: Vec<Participant>,
     /// The locations at the start, by component.
     pub(crate) initial: Vec<usize>,
@@ -107,6 +110,9 @@ pub struct JumpRecord {
     pub at: HybridTime,
     /// The event or the label.
     pub label: String,
+    /// The names of the components that take part, with commas between them; empty in a run of a single
+    /// component.
+    pub by: String,
     /// The moves of the components.
     pub moves: Vec<Move>,
 }
@@ -123,10 +129,47 @@ pub enum FileError {
     Inconsistent(&'static str),
 }
 
+/// Why nothing has a value.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum NoValue {
+    /// No variable and no signal has the name.
+    #[error("there is no variable or signal `{name}`: there are {}", known.join(", "))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+    /// The instant is not within the run.
+    #[error("{t} s is not within the run, which lasts from 0 to {end} s")]
+    Outside {
+        /// The instant, in seconds.
+        t: f64,
+        /// When the run ends, in seconds.
+        end: f64,
+    },
+    /// The formula of a signal has no value in the state at the instant.
+    #[error("signal `{name}` has no value at {t} s: {error}")]
+    Undefined {
+        /// The signal.
+        name: String,
+        /// The instant, in seconds.
+        t: f64,
+        /// Why.
+        error: EvaluationError,
+    },
+}
+
 impl Trajectory {
     /// The names of the variables, in the order of the values in samples.
     pub fn variables(&self) -> &[String] {
         &self.variables
+    }
+
+    /// The signals, each with its formula of variables.
+    pub fn signals(&self) -> impl ExactSizeIterator<Item = (&str, &Expression)> {
+        self.signals.iter().map(|(name, formula)| (name.as_str(), formula))
     }
 
     /// The components in their order.
@@ -225,7 +268,7 @@ impl Trajectory {
 
     /// The state of the sample as a valuation.
     pub fn state<'a>(&'a self, sample: &'a Sample) -> State<'a> {
-        State { variables: &self.variables, values: &sample.values }
+        State { trajectory: self, values: &sample.values }
     }
 
     /// The values at instant `t`, after all jumps there; `None` outside the run.
@@ -240,16 +283,45 @@ impl Trajectory {
         Some(values)
     }
 
-    /// The value of `variable` at instant `t`, after all jumps there; `None` outside the run and
-    /// for a variable that does not exist.
-    pub fn value(&self, variable: &str, t: f64) -> Option<f64> {
-        let slot = self.variables.iter().position(|name| name == variable)?;
-        let at = self.last_at(t)?;
-        let strand = self.strands.iter().find(|strand| strand.slots.contains(&slot))?;
-        let place = strand.slots.iter().position(|one| *one == slot)?;
+    /// The value of the variable or signal called `name` at instant `t`, after all jumps there.
+    ///
+    /// # Errors
+    ///
+    /// [`NoValue`] for a name that does not exist, outside the run, and where a signal has no value.
+    pub fn value(&self, name: &str, t: f64) -> Result<f64, NoValue> {
+        let slot = self.variables.iter().position(|variable| variable == name);
+        let Some(slot) = slot else { return self.signal_value(name, t) };
+        let at = self.within(t)?;
+        let strands = self.strands.iter();
+        let mut places = strands
+            .filter_map(|strand| Some((strand, strand.slots.iter().position(|one| *one == slot)?)));
         let mut own = Vec::new();
-        strand.stretch(at).values(t, &mut own);
-        own.get(place).copied()
+        let value = places.next().and_then(|(strand, place)| {
+            strand.stretch(at).values(t, &mut own);
+            own.get(place).copied()
+        });
+        value.ok_or_else(|| self.unknown(name))
+    }
+
+    fn signal_value(&self, name: &str, t: f64) -> Result<f64, NoValue> {
+        let mut signals = self.signals.iter();
+        let (_, formula) = signals.find(|one| one.0 == name).ok_or_else(|| self.unknown(name))?;
+        self.within(t)?;
+        let values = self.values_at(t).unwrap_or_default();
+        let state = State { trajectory: self, values: &values };
+        let undefined = |error| NoValue::Undefined { name: name.to_owned(), t, error };
+        formula.evaluate(&state).map_err(undefined)
+    }
+
+    fn unknown(&self, name: &str) -> NoValue {
+        let signals = self.signals.iter().map(|(name, _)| name);
+        let known = self.variables.iter().chain(signals).cloned().collect();
+        NoValue::Unknown { name: name.to_owned(), known }
+    }
+
+    fn within(&self, t: f64) -> Result<HybridTime, NoValue> {
+        let end = self.ending.at.t;
+        self.last_at(t).ok_or(NoValue::Outside { t, end })
     }
 
     /// The location of a component at instant `t`, after all jumps there.
@@ -306,6 +378,11 @@ impl Trajectory {
                 "every flow needs a value for each of its variables, in order of time",
             ));
         }
+        let is_variable = |name: &str| self.variables.iter().any(|variable| variable == name);
+        let mut read = self.signals.iter().flat_map(|(_, formula)| formula.variables());
+        if !read.all(is_variable) {
+            return Err(wrong("signals must be formulas of the variables"));
+        }
         let mut slots: Vec<usize> =
             self.strands.iter().flat_map(|strand| strand.slots.iter().copied()).collect();
         slots.sort_unstable();
@@ -352,22 +429,28 @@ pub(crate) fn between(before: &Sample, after: &Sample, t: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The state of a sample under the names of the variables.
+/// The state of a sample under the names of variables and signals.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'a> {
-    variables: &'a [String],
+    trajectory: &'a Trajectory,
     values: &'a [f64],
 }
 
 impl Valuation for State<'_> {
-    fn value(&self, variable: &str) -> Option<f64> {
-        let place = self.variables.iter().position(|name| name == variable)?;
-        self.values.get(place).copied()
+    fn value(&self, name: &str) -> Option<f64> {
+        let Trajectory { variables, signals, .. } = self.trajectory;
+        match variables.iter().position(|variable| variable == name) {
+            Some(place) => self.values.get(place).copied(),
+            None => signals.iter().find(|one| one.0 == name)?.1.evaluate(self).ok(),
+        }
     }
 }
 
 impl fmt::Display for JumpRecord {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} {}", self.at, self.label)
+        match &*self.by {
+            "" => write!(formatter, "{} {}", self.at, self.label),
+            components => write!(formatter, "{} {components}: {}", self.at, self.label),
+        }
     }
 }

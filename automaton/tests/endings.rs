@@ -92,7 +92,7 @@ fn a_wait_too_short_to_change_the_time_blocks() {
 #[test]
 fn jumps_without_end_at_one_instant_are_stopped() {
     let (at, reason) = ending(true, None);
-    assert_eq!((at, reason), (HybridTime { t: 0.0, j: 6 }, Reason::JumpLimit));
+    assert_eq!((at, reason), (HybridTime { t: 0.0, j: 6 }, Reason::JumpLimit(None)));
 }
 
 #[test]

@@ -233,7 +233,8 @@ fn resets_onto_guards_end_the_run() {
     for guard in [place.at_least(1.0), place.more_than(1.0)] {
         let again = from(Here).on(Go).to(Here).must(guard).then(place.becomes(1.0));
         let trajectory = run(line().transition(again), 5.0);
-        assert_eq!(trajectory.ending().reason, Reason::JumpLimit, "{:?}", trajectory.ending());
+        let ending = trajectory.ending();
+        assert!(matches!(ending.reason, Reason::JumpLimit(_)), "{ending:?}");
         assert_near(trajectory.ending().at.t, 1.0, 1e-11);
     }
 }

@@ -112,16 +112,19 @@ fn a_sampled_loop_with_delay_saturation_and_load_is_exact() {
     }
 }
 
+/// A counter that is sampled.
+fn counter() -> Automaton<Place, Cue, Counter> {
+    let Counter { count } = Counter::coordinates();
+    let counts = from(Running).on(Sample).to(Running).may(always());
+    Automaton::starting_in(Running)
+        .initially(Counter { count: 0.0 })
+        .transition(counts.then(count.becomes(&count + 1)))
+        .build()
+        .expect("it is sound")
+}
+
 /// A counter that is sampled, and one that adds up what it hears of it a quarter of a second later.
 fn counted(channel: Channel) -> Result<Composition, CompositionError> {
-    let Counter { count } = Counter::coordinates();
-    let counter = Automaton::starting_in(Running)
-        .initially(Counter { count: 0.0 })
-        .transition(
-            from(Running).on(Sample).to(Running).may(always()).then(count.becomes(&count + 1)),
-        )
-        .build()
-        .expect("it is sound");
     let Sum { total, rate } = Sum::coordinates();
     let sum = Automaton::starting_in(Running)
         .initially(Sum { total: 0.0, rate: 0.0 })
@@ -130,7 +133,7 @@ fn counted(channel: Channel) -> Result<Composition, CompositionError> {
         .build()
         .expect("it is sound");
     Composition::builder()
-        .add("counter", &counter)
+        .add("counter", &counter())
         .add("sum", &sum)
         .every("counter.sample", 1.0)
         .channel(channel.taking(0.25, 0.25))
@@ -168,16 +171,8 @@ fn what_is_under_way_cannot_be_read() {
 /// The first sample is at the phase, and no error adds up.
 #[test]
 fn samples_are_taken_at_even_intervals_from_the_phase_on() {
-    let Counter { count } = Counter::coordinates();
-    let counter = Automaton::starting_in(Running)
-        .initially(Counter { count: 0.0 })
-        .transition(
-            from(Running).on(Sample).to(Running).may(always()).then(count.becomes(&count + 1)),
-        )
-        .build()
-        .expect("it is sound");
     let sampled = |period: f64, phase: f64| {
-        let builder = Composition::builder().add("counter", &counter);
+        let builder = Composition::builder().add("counter", &counter());
         builder.every_from("counter.sample", period, phase).build()
     };
     for phase in [0.0, 0.003, 0.1, 0.25] {

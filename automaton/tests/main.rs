@@ -36,6 +36,7 @@ mod records;
 mod sampled_rooms;
 mod semantics;
 mod sets;
+mod signals;
 mod sliding;
 mod solver;
 mod steps;

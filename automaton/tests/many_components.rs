@@ -57,7 +57,7 @@ fn each_jumps_once_in_the_order_of_components() {
     let numbers = trajectory.jumps().iter().map(|jump| jump.at.j);
     assert!(numbers.eq(0..2 * ROOMS as u32));
     let last = trajectory.value("room 999.T", 5.0);
-    assert!(last.is_some_and(|temperature| (temperature - 21.0).abs() < 1e-12));
+    assert!(last.is_ok_and(|temperature| (temperature - 21.0).abs() < 1e-12));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The semantics of runs, as `docs/semantics.md` states them, clause by clause.
 
+use pleach_automaton::diagram::outcome;
 use pleach_automaton::{
     Automaton, Composition, Failure, HybridTime, Policy, Reason, Reset, Settings, Trajectory,
     coordinates, from, observed,
@@ -86,7 +87,7 @@ fn a_reset_may_be_a_function() {
     let pair = parts.connect("other.n", "one.n").build().expect("the parts fit");
     let trajectory = pair.run(1.5).expect("it can be run");
     let values = ["one.τ", "other.n", "other.τ"].map(|name| trajectory.value(name, 1.5));
-    assert_eq!(values, [Some(0.5), Some(0.0), Some(1.5)]);
+    assert_eq!(values, [Ok(0.5), Ok(0.0), Ok(1.5)]);
 }
 
 #[test]
@@ -227,7 +228,13 @@ fn jumps_without_end_at_one_instant_reach_the_limit() {
             .transition(from(There).on(Return).to(Here).at_once(always())),
     );
     let trajectory = run(&machine, 5.0);
-    assert_eq!(trajectory.ending().reason, Reason::JumpLimit);
+    let Reason::JumpLimit(Some(last)) = trajectory.ending().reason else {
+        panic!("{:?}", trajectory.ending())
+    };
+    assert_eq!(last.component, 0);
+    let text = outcome(&trajectory);
+    let name = &trajectory.components()[0].locations[last.location];
+    assert!(text.contains(&format!("the last into `{name}`")), "{text}");
     assert_eq!(trajectory.ending().at.t, 1.0);
 }
 
@@ -301,8 +308,8 @@ fn inputs_that_read_one_coordinate_add_up() {
         .expect("the parts fit");
     let trajectory = composition.run(2.0).expect("it can be run");
     // ṡ = 2t, so s = t².
-    let total = trajectory.value("reader.s", 2.0);
-    assert!(total.is_some_and(|total| (total - 4.0).abs() < 1e-12), "{total:?}");
+    let total = trajectory.value("reader.s", 2.0).expect("it lasts");
+    assert!((total - 4.0).abs() < 1e-12, "{total}");
 }
 
 /// What is read comes first among the coordinates of the reader; whichever of the two is added first.
@@ -329,8 +336,8 @@ fn a_component_may_begin_with_its_inputs() {
         let jumps: Vec<f64> = trajectory.jumps().iter().map(|jump| jump.at.t).collect();
         assert_eq!(jumps, [1.5]);
         // ṡ = 2t until then, and s rests behind it.
-        let total = trajectory.value("reader.s", 2.0);
-        assert!(total.is_some_and(|total| (total - 2.25).abs() < 1e-12), "{total:?}");
+        let total = trajectory.value("reader.s", 2.0).expect("it lasts");
+        assert!((total - 2.25).abs() < 1e-12, "{total}");
     }
 }
 

@@ -69,7 +69,7 @@ fn jumps_back_and_forth_along_one_flow_are_no_sliding() {
         both.build().expect("it is sound").run(2.0).expect("it can be run").ending().reason.clone()
     };
     assert!(matches!(reason(1.0, -1.0), Reason::Sliding(_)));
-    assert_eq!(reason(1.0, 1.0), Reason::JumpLimit);
+    assert!(matches!(reason(1.0, 1.0), Reason::JumpLimit(_)));
 }
 
 /// However slow a side is, jumps to and fro over one boundary are sliding; with room between the guards they
@@ -139,7 +139,7 @@ fn jumps_over_two_boundaries_that_meet_are_no_sliding() {
             .clone()
     };
     // One tank is filled while the other runs out, and the hose is moved to and fro.
-    assert_eq!(reason(0.25), Reason::JumpLimit);
+    assert!(matches!(reason(0.25), Reason::JumpLimit(_)));
     // A quarter of the second flow stays on both boundaries: the state rests in the corner.
     assert!(matches!(reason(2.25), Reason::Sliding(_)));
 }
@@ -159,7 +159,7 @@ fn jumps_in_a_circle_are_no_sliding() {
             .transition(next(Second, Third))
             .transition(next(Third, First));
         let trajectory = circle.build().expect("it is sound").run(2.0).expect("it can be run");
-        assert_eq!(trajectory.ending().reason, Reason::JumpLimit);
+        assert!(matches!(trajectory.ending().reason, Reason::JumpLimit(_)));
     }
 }
 
@@ -175,7 +175,7 @@ fn the_opposite_of_the_sign_comes_to_rest_with_closed_and_with_strict_guards() {
         for parts in [parts, inside] {
             let trajectory = run(parts, 5.0);
             tells(&trajectory, &[(1.0, "before | behind")], 1e-15);
-            assert_eq!(trajectory.value("x", 3.0), Some(0.0));
+            assert_eq!(trajectory.value("x", 3.0), Ok(0.0));
             assert_eq!(trajectory.location(0, 3.0), Some("before | behind"));
             assert!(trajectory.doubts().is_empty());
         }
@@ -238,7 +238,7 @@ fn what_else_is_asked_of_a_crossing_ends_sliding() {
             .flow(Behind, [px.rate(1.0), py.rate(1.0)]);
     let trajectory = run(parts, 4.0);
     tells(&trajectory, &[(1.0, "before | behind"), (2.0, "before")], 1e-12);
-    assert!(trajectory.value("x", 4.0).is_some_and(|x| (x + 2.0).abs() < 1e-11));
+    assert!(trajectory.value("x", 4.0).is_ok_and(|x| (x + 2.0).abs() < 1e-11));
 }
 
 #[test]
@@ -256,7 +256,7 @@ fn other_transitions_are_taken_from_the_surface() {
         );
     let trajectory = run(parts, 4.0);
     tells(&trajectory, &[(1.0, "before | behind"), (2.0, "before")], 1e-12);
-    assert_eq!(trajectory.value("x", 4.0), Some(1.0));
+    assert_eq!(trajectory.value("x", 4.0), Ok(1.0));
 }
 
 /// Two flows through a circle, one outwards and one inwards, both turning: the state goes round.
@@ -377,7 +377,7 @@ fn parameters_checks_and_drawings_know_the_surface() {
         let trajectory = changed.run(40.0).expect("it can be run");
         assert_eq!(trajectory.ending().reason, Reason::Horizon, "{:?}", story(&trajectory));
         let rests = trajectory.value("x", 40.0).expect("the run lasts");
-        assert!(rests.abs() <= force && trajectory.value("y", 40.0) == Some(0.0), "{rests}");
+        assert!(rests.abs() <= force && trajectory.value("y", 40.0) == Ok(0.0), "{rests}");
     }
     let report = automaton.check();
     assert!(report.is_sound(), "{report}");

@@ -17,18 +17,22 @@ coordinates! {
 }
 use {Cue::Sample, Place::Here};
 
+fn counter() -> Automaton<Place, Cue, Counter> {
+    let Counter { count, .. } = Counter::coordinates();
+    let counts = from(Here).on(Sample).to(Here).may(always()).then(count.becomes(&count + 1));
+    Automaton::starting_in(Here)
+        .initially(Counter { count: 0.0, seen: 0.0 })
+        .transition(counts)
+        .build()
+        .expect("it is sound")
+}
+
 /// An oscillator, a counter that is sampled, and what follows the counter later: groups of their own.
 fn model(period: f64) -> Composition {
     let Wave { place, speed } = Wave::coordinates();
     let wave = Automaton::<_, Cue, _>::starting_in(Here)
         .initially(Wave { place: 1.0, speed: 0.0 })
         .flow(Here, [place.rate(&speed), speed.rate(-&place)])
-        .build()
-        .expect("it is sound");
-    let Counter { count, .. } = Counter::coordinates();
-    let counter = Automaton::starting_in(Here)
-        .initially(Counter { count: 0.0, seen: 0.0 })
-        .transition(from(Here).on(Sample).to(Here).may(always()).then(count.becomes(&count + 1)))
         .build()
         .expect("it is sound");
     let Lag { follower, input } = Lag::coordinates();
@@ -39,7 +43,7 @@ fn model(period: f64) -> Composition {
         .expect("it is sound");
     Composition::builder()
         .add("wave", &wave)
-        .add("counter", &counter)
+        .add("counter", &counter())
         .add("lag", &lag)
         .every("counter.sample", period)
         .channel(
@@ -141,4 +145,25 @@ fn the_memory_of_a_stream_does_not_grow() {
     assert_eq!(finish.ending.reason, Reason::Horizon);
     assert_eq!(counts.0[1], 2 * 10_241 - 1);
     assert!(counts.0[0] >= 20_480, "{}", counts.0[0]);
+}
+
+/// More ticks than a day of control at 100 Hz has: what the process holds is what it held after a thousandth
+/// of them.
+#[test]
+#[ignore = "it takes a minute"]
+fn ten_million_ticks_take_no_memory() {
+    let period = 1.0 / 1024.0;
+    let sampled = Composition::builder().add("counter", &counter());
+    let sampled = sampled.every("counter.sample", period).build().expect("they fit together");
+    let settings = Settings { jump_limit: u64::MAX, step_limit: u64::MAX, ..Settings::default() };
+    let held_after = |ticks: f64| {
+        let finish = sampled.stream(settings, ticks * period, &mut ()).expect("it runs");
+        assert_eq!((finish.ending.reason, finish.values[0]), (Reason::Horizon, ticks + 1.0));
+        let status = std::fs::read_to_string("/proc/self/status").expect("Linux says what is held");
+        let held = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        let held = held.and_then(|held| held.trim().strip_suffix(" kB")?.parse::<u64>().ok());
+        held.expect("it is a number")
+    };
+    let [few, many] = [1e4, 1e7].map(held_after);
+    assert!(many < few + 1024, "{few} kB, and then {many}");
 }

@@ -98,7 +98,7 @@ fn ending(trajectory: &Trajectory) -> String {
             number(zeno.accumulation),
         ),
         Reason::Blocked => format!("Blocked at {t} s: no time can pass and nothing can be taken."),
-        Reason::JumpLimit => format!("Jumps without end at {t} s."),
+        Reason::JumpLimit(_) => format!("Jumps without end at {t} s."),
         Reason::Finished(failure) | Reason::Interrupted(failure) => failed(&t, failure),
         other => format!("{other:?} at {t} s"),
     }

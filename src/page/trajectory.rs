@@ -1,9 +1,9 @@
 //! The page of a trajectory: a run of any automaton or composition.
 
-use pleach_automaton::trajectory::{FlowInterval, JumpRecord, Participant};
+use pleach_automaton::trajectory::{FlowInterval, JumpRecord, Participant, Sample};
 use pleach_automaton::{Automaton, Reason, Trajectory, diagram};
 use pleach_discrete::{Event, Location};
-use pleach_guards::Valuation;
+use pleach_guards::{EvaluationError, Program, Valuation};
 use serde_json::{Value, json};
 
 use super::document::{Document, Outcome, Row};
@@ -11,7 +11,7 @@ use super::document::{Document, Outcome, Row};
 /// Makes the page on which a run of a hybrid automaton or a composition plays: one HTML file that
 /// needs no other.
 ///
-/// It shows the locations of each component as a time line, every variable as a curve, the jumps,
+/// It shows the locations of each component as a time line, every variable and signal as a curve, the jumps,
 /// and the drawings of the automata with the active location lit. Numbers are those of the
 /// trajectory, to nine digits; between samples they follow the cubic that has the samples' values
 /// and rates.
@@ -112,15 +112,17 @@ impl<'a> TrajectoryPage<'a> {
         Outcome { class, headline: headline.to_owned(), text }
     }
 
-    /// From where to where each variable goes, at the samples.
+    /// From where to where each variable and signal goes, at the samples.
     fn rows(&self) -> Vec<Row> {
-        let names = self.trajectory.variables().iter().enumerate();
-        let rows = names.map(|(variable, name)| {
-            let values = self.trajectory.samples().map(|(_, sample)| sample.values[variable]);
+        let curves = Curves::of(self.trajectory);
+        let names = curves.names.iter().enumerate();
+        let rows = names.map(|(place, name)| {
+            let samples = self.trajectory.samples();
+            let values = samples.map(|(_, sample)| curves.extended(sample).values[place]);
             let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
                 (low.min(v), high.max(v))
             });
-            Row::new(name.as_str(), format!("from {low:.6} to {high:.6}"))
+            Row::new(*name, format!("from {low:.6} to {high:.6}"))
         });
         let jumps = self.trajectory.jumps().len();
         rows.chain([Row::new("jumps", jumps.to_string())]).collect()
@@ -128,18 +130,19 @@ impl<'a> TrajectoryPage<'a> {
 
     fn data(&self) -> Value {
         let run = self.trajectory;
+        let curves = Curves::of(run);
         let drawing = |component: &Participant| {
             self.drawings.iter().position(|drawing| drawing.locations == component.locations)
         };
         json!({
             "kind": "run",
-            "variables": run.variables(),
+            "variables": curves.names,
             "components": run.components().iter().map(|component| json!({
                 "name": component.name,
                 "locations": component.locations,
                 "drawing": drawing(component),
             })).collect::<Vec<_>>(),
-            "phases": run.intervals().map(|phase| phase_data(&phase)).collect::<Vec<_>>(),
+            "phases": run.intervals().map(|phase| phase_data(phase, &curves)).collect::<Vec<_>>(),
             "events": run.jumps().iter().map(|jump| self.jump_data(jump)).collect::<Vec<_>>(),
             "end": rounded(run.ending().at.t),
             "drawings": self.drawings.iter().map(|drawing| &drawing.svg).collect::<Vec<_>>(),
@@ -162,13 +165,55 @@ impl<'a> TrajectoryPage<'a> {
     }
 }
 
-fn phase_data(phase: &FlowInterval) -> Value {
+/// What curves show: the variables, and after them the signals.
+struct Curves<'a> {
+    names: Vec<&'a str>,
+    /// The formula of each signal, and its derivatives by variables.
+    signals: Vec<(Program, Vec<(usize, Program)>)>,
+}
+
+impl<'a> Curves<'a> {
+    fn of(run: &'a Trajectory) -> Self {
+        let variables = run.variables();
+        let mut names: Vec<&str> = variables.iter().map(String::as_str).collect();
+        let mut signals = Vec::new();
+        for (name, formula) in run.signals() {
+            let read = variables.iter().enumerate();
+            let read = read.filter(|(_, variable)| formula.variables().contains(variable.as_str()));
+            let slope = |(place, variable): (usize, &String)| {
+                Ok((place, formula.derivative(variable).compile(variables)?))
+            };
+            let slopes = read.map(slope).collect::<Result<_, EvaluationError>>();
+            if let (Ok(formula), Ok(slopes)) = (formula.compile(variables), slopes) {
+                names.push(name);
+                signals.push((formula, slopes));
+            }
+        }
+        Curves { names, signals }
+    }
+
+    /// The sample with values and rates of signals; at a kink, where one has no rate, with 0 as its rate.
+    fn extended(&self, sample: Sample) -> Sample {
+        let Sample { t, mut values, mut rates } = sample;
+        for (formula, slopes) in &self.signals {
+            let rate = slopes.iter().map(|(place, slope)| slope.evaluate(&values) * rates[*place]);
+            let rate: f64 = rate.sum();
+            rates.push(if rate.is_finite() { rate } else { 0.0 });
+            values.push(formula.evaluate(&values));
+        }
+        Sample { t, values, rates }
+    }
+}
+
+fn phase_data(phase: FlowInterval, curves: &Curves<'_>) -> Value {
+    let FlowInterval { locations, samples } = phase;
+    let samples: Vec<Sample> = samples.into_iter().map(|one| curves.extended(one)).collect();
     let all = |numbers: &[f64]| numbers.iter().map(|&number| rounded(number)).collect::<Vec<_>>();
     json!({
-        "locations": phase.locations,
-        "t": phase.samples.iter().map(|sample| rounded(sample.t)).collect::<Vec<_>>(),
-        "values": phase.samples.iter().map(|sample| all(&sample.values)).collect::<Vec<_>>(),
-        "rates": phase.samples.iter().map(|sample| all(&sample.rates)).collect::<Vec<_>>(),
+        "locations": locations,
+        "t": samples.iter().map(|sample| rounded(sample.t)).collect::<Vec<_>>(),
+        "values": samples.iter().map(|sample| all(&sample.values)).collect::<Vec<_>>(),
+        "rates": samples.iter().map(|sample| all(&sample.rates)).collect::<Vec<_>>(),
     })
 }
 

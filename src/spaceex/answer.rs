@@ -6,10 +6,10 @@ use crate::automaton::diagram::{FlowpipePicture, Patch};
 use crate::automaton::trajectory::Sample;
 use crate::guards::Interval;
 use crate::verify::reach::{
-    Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, falsify, prove, runs,
+    Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, Settings, falsify, prove, runs,
 };
 
-use super::Problem;
+use super::{Initial, Problem};
 
 /// How a question is answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,8 @@ pub struct Solution {
 
 impl Problem {
     /// Encloses all runs and, where that does not decide, looks for one that comes to a forbidden
-    /// state. `progress` is told how long runs have lasted in what is enclosed; it may end the search.
+    /// state, and then encloses all in [finer](Proof::refined) sets. `progress` is told how long runs have
+    /// lasted in what is enclosed; it may end the search.
     ///
     /// # Errors
     ///
@@ -49,14 +50,24 @@ impl Problem {
             return Err(crate::verify::reach::ModelError::Initial.into());
         };
         let model = Model::with_uncertain(automaton, &self.uncertain)?;
-        let mut proofs = Vec::new();
-        for initial in &self.initial {
+        let mut prove = |initial: &Initial, settings: &Settings| {
             let model = model.clone().beginning_in(&initial.locations)?;
             let starts = std::slice::from_ref(&initial.states);
-            proofs.push(prove(&model, starts, &self.forbidden, &self.settings, progress)?);
+            prove(&model, starts, &self.forbidden, settings, progress)
+        };
+        let mut proofs = Vec::new();
+        for initial in &self.initial {
+            proofs.push(prove(initial, &self.settings)?);
         }
         let is_decided = self.forbidden.is_empty() || proofs.iter().all(Proof::holds);
         let nearest = if is_decided { None } else { self.nearest(effort) };
+        if nearest.as_ref().is_none_or(|run| !run.is_violation) {
+            let coarse = self.initial.iter().zip(proofs);
+            let finer = coarse.map(|(initial, proof)| {
+                proof.refined(&self.settings, |finer| prove(initial, finer))
+            });
+            proofs = finer.collect::<Result<_, _>>()?;
+        }
         Ok(Solution { model, proofs, nearest })
     }
 

@@ -8,7 +8,8 @@
 //! | in the file | in the automaton |
 //! | --- | --- |
 //! | a number with a flow | a coordinate |
-//! | a number without a flow, bounded by invariants | an input, which varies within the bounds; what is enclosed has the ends of strict ones, too |
+//! | a number without a flow, bounded by invariants | an input, which varies within the bounds; what is enclosed has the ends of strict ones, too. Where its bounds depend on the location, the input is its share of the way from their middle, `u_share` |
+//! | a number that every location's invariant says is a formula, `y == x1 + 2*x2` | a [signal](crate::automaton::Builder::signal) |
 //! | a constant that is bound, or given by `initially` | a parameter, uncertain where an interval is given |
 //! | a transition | one that may be taken; with `asap="true"`, has to be |
 //! | `x' >= a & x' <= b` in an assignment | any value within the bounds |

@@ -47,6 +47,8 @@ pub(super) struct Network<'a> {
     pub known: BTreeMap<String, Known>,
     /// What numbers of inner components stand for, as `component.number`.
     pub inner: BTreeMap<String, Bound>,
+    /// The formulas of outputs.
+    pub outputs: BTreeMap<String, Expression>,
 }
 
 /// How deep components may contain each other.
@@ -55,8 +57,12 @@ const DEPTH: usize = 32;
 impl<'a> Network<'a> {
     /// The instances in `system`.
     pub fn of(components: &'a [Component], system: &'a Component) -> Result<Self, SpaceExError> {
-        let mut network =
-            Network { instances: Vec::new(), known: BTreeMap::new(), inner: BTreeMap::new() };
+        let mut network = Network {
+            instances: Vec::new(),
+            known: BTreeMap::new(),
+            inner: BTreeMap::new(),
+            outputs: BTreeMap::new(),
+        };
         network.add(components, system, "", BTreeMap::new(), 0)?;
         let Network { known, inner, .. } = &mut network;
         inner.retain(|name, _| !known.contains_key(name));

@@ -8,17 +8,23 @@ mod question;
 use std::collections::BTreeMap;
 
 use crate::automaton::{Automaton, Coordinate, Name, Record};
-use crate::guards::Interval;
+use crate::guards::{Expression, Interval, Substitution, constant, variable};
 use crate::verify::reach::Uncertain;
 
 use super::configuration::Options;
 use super::document::{Component, Transition};
+use super::formula::Relation;
 use super::network::Network;
 use super::{Initial, Problem, SpaceExError};
-use clause::fixed;
+use clause::{bound, fixed};
 
 /// How many locations a product may have.
 const LOCATIONS: usize = 4096;
+
+/// The input that says where another one is within its bounds.
+fn share_of(input: &str) -> String {
+    format!("{input}_share")
+}
 
 type Result<T> = std::result::Result<T, SpaceExError>;
 
@@ -53,6 +59,9 @@ struct Product<'a> {
     /// The coordinates.
     variables: Vec<String>,
     inputs: Vec<(String, Interval)>,
+    /// Inputs with other bounds in other locations, each with its bounds by tuple: of these the share of
+    /// the way from the middle of the bounds is an input, between −1 and 1.
+    shares: BTreeMap<String, Vec<Interval>>,
     /// Constants with their values.
     constants: Vec<(String, Interval)>,
     /// The places of the instances in each location of the product.
@@ -67,6 +76,7 @@ impl<'a> Product<'a> {
             line,
             variables: Vec::new(),
             inputs: Vec::new(),
+            shares: BTreeMap::new(),
             constants: Vec::new(),
             tuples: Vec::new(),
             names: Vec::new(),
@@ -117,41 +127,66 @@ impl<'a> Product<'a> {
                 };
                 self.constants.push((name.clone(), values));
             } else {
-                let values = self.input_bounds(name)?;
-                let values =
-                    values.map_err(|problem| SpaceExError::Model { line: known.line, problem })?;
-                self.inputs.push((name.clone(), values));
+                let bounds = self.input_bounds(name)?;
+                let bounds =
+                    bounds.map_err(|problem| SpaceExError::Model { line: known.line, problem })?;
+                let (first, others) = (bounds[0], &bounds[1..]);
+                if others.iter().all(|other| *other == first) {
+                    self.inputs.push((name.clone(), first));
+                } else {
+                    let share = Interval::new(-1.0, 1.0).unwrap_or(Interval::WHOLE);
+                    self.inputs.push((share_of(name), share));
+                    self.shares.insert(name.clone(), bounds);
+                }
             }
         }
         Ok(())
     }
 
-    /// Between which numbers the invariants keep an input, in every location of the product alike; or else what is wrong.
-    fn input_bounds(&self, name: &str) -> Result<std::result::Result<Interval, String>> {
-        let mut known: Option<(Name, Interval)> = None;
+    /// Between which numbers the invariants keep an input, by location; or else what is wrong.
+    fn input_bounds(&self, name: &str) -> Result<std::result::Result<Vec<Interval>, String>> {
+        let mut known: Vec<Interval> = Vec::new();
+        let mut has_strict = false;
         for (tuple, location) in self.tuples.iter().zip(&self.names) {
             let mut clauses = Vec::new();
             for (instance, place) in self.network.instances.iter().zip(tuple) {
                 clauses.extend(instance.clauses(&instance.component.locations[*place].invariant)?);
             }
-            let bounds = fixed(&[clauses], name).filter(|bounds| bounds.width().is_finite());
+            let bounds = fixed(std::slice::from_ref(&clauses), name)
+                .filter(|bounds| bounds.width().is_finite());
             let Some(bounds) = bounds else {
                 return Ok(Err(format!(
                     "`{name}` has neither a flow nor bounds in location `{location}`: give it a flow, or keep it \
                      between two numbers in the invariants of every location"
                 )));
             };
-            match &known {
-                Some((other, others)) if *others != bounds => {
-                    return Ok(Err(format!(
-                        "`{name}` is kept in {others} in location `{other}`, and in {bounds} in `{location}`: give \
-                         this input the same bounds in every location"
-                    )));
-                }
-                _ => known = Some((*location, bounds)),
-            }
+            let of_input = clauses.iter().filter_map(bound).filter(|(own, ..)| *own == name);
+            let mut relations = of_input.map(|(_, relation, _)| relation);
+            has_strict |= relations.any(|it| matches!(it, Relation::LessThan | Relation::MoreThan));
+            known.push(bounds);
         }
-        Ok(known.map(|(_, bounds)| bounds).ok_or_else(|| format!("`{name}` is in no location")))
+        let Some(first) = known.first() else {
+            return Ok(Err(format!("`{name}` is in no location")));
+        };
+        let other = self.names.iter().zip(&known).find(|(_, bounds)| *bounds != first);
+        Ok(match other.filter(|_| has_strict) {
+            Some((location, bounds)) => Err(format!(
+                "`{name}` is kept in {first} in location `{}`, and in {bounds} in `{location}`, and some of its \
+                 bounds are strict: give this input the same bounds in every location",
+                self.names[0]
+            )),
+            None => Ok(known),
+        })
+    }
+
+    /// What stands for inputs whose bounds are not the same in all locations.
+    fn of_shares(&self, tuple: &[usize]) -> Substitution {
+        let place = self.tuples.iter().position(|other| other == tuple).unwrap_or_default();
+        Substitution::new(self.shares.iter().map(|(name, bounds)| {
+            let (middle, bounds) = (bounds[place].midpoint(), bounds[place]);
+            let radius = (bounds.upper() - middle).max(middle - bounds.lower()).next_up();
+            (name, constant(middle) + constant(radius) * variable(&share_of(name)))
+        }))
     }
 
     /// The tuples of locations, and their names.
@@ -246,6 +281,12 @@ impl<'a> Product<'a> {
         let mut builder = Automaton::<Name, Name, Record>::starting_in(first).initially(state);
         for (name, values) in self.constants.iter().chain(&self.inputs) {
             builder = builder.parameter(name, values.midpoint());
+        }
+        // An output of an input with other bounds in other locations has no formula for all of them.
+        let is_one =
+            |formula: &Expression| formula.variables().into_iter().all(|name| self.is_number(name));
+        for (name, formula) in self.network.outputs.iter().filter(|(_, it)| is_one(it)) {
+            builder = builder.signal(name, formula);
         }
         for (tuple, name) in self.tuples.iter().zip(&self.names) {
             builder = self.add_location(builder, tuple, *name, &coordinates)?;

@@ -20,7 +20,7 @@ pub struct Written {
 
 /// The automaton and its question in the files of SpaceEx, as one base component called `system`.
 ///
-/// Inputs become numbers that invariants bound. A transition that has to be taken gets
+/// Inputs become numbers that invariants bound, and signals numbers that they say. A transition that has to be taken gets
 /// `asap="true"`. `shown` are the variables to be shown.
 ///
 /// # Errors
@@ -70,6 +70,7 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
                 number(name, "const", false)
             });
         }
+        lines.extend(self.automaton.signals().map(|(name, _)| number(name, "any", false)));
         for event in self.automaton.events() {
             lines.push(format!(
                 r#"    <param name="{}" type="label" local="false" />"#,
@@ -122,6 +123,9 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
                 one.values.upper()
             )
         }));
+        for (name, formula) in self.automaton.signals() {
+            kept.push(format!("{name} == {}", plain(formula)?));
+        }
         kept.retain(|part| part != "true");
         let flow = mode.and_then(|mode| mode.flow.as_ref());
         let rates = match flow {

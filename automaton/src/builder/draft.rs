@@ -9,6 +9,7 @@ use super::parts::{Given, Parts};
 use crate::flow::Rate;
 use crate::law::Command;
 use crate::lists::place_of;
+use crate::named::kept;
 use crate::reset::NewValue;
 
 /// The parts, with the names that the types give to locations and events.
@@ -121,6 +122,7 @@ impl<'a> Draft<'a> {
         if let Some(names) = known {
             let is_parameter = |name: &str| parameters.iter().any(|(known, _)| known == name);
             self.check_parameters(names)?;
+            self.check_signals(names)?;
             self.check_variables(&|name| names.contains(&name) || is_parameter(name))?;
             self.check_initial_state(names)?;
             if let Some(state) = self.initial_state {
@@ -235,7 +237,20 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// Whatever flows, invariants, guards, resets and ranges name is a variable, and no coordinate
+    fn check_signals(&self, names: &[&'static str]) -> Result<(), BuildError> {
+        let Parts { parameters, signals, .. } = self.parts;
+        for (position, (name, _)) in signals.iter().enumerate() {
+            let is_taken = names.contains(&name.as_str())
+                || parameters.iter().any(|(other, _)| other == name)
+                || signals[..position].iter().any(|(other, _)| other == name);
+            if is_taken {
+                return Err(BuildError::SignalNameTaken { signal: name.clone() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whatever signals, flows, invariants, guards, resets and ranges name is a variable, and no coordinate
     /// is given two values at once.
     pub(super) fn check_variables(
         &self,
@@ -308,6 +323,15 @@ impl<'a> Draft<'a> {
 
     fn formulas(&self) -> Vec<Part> {
         let mut parts = Vec::new();
+        for (name, formula) in &self.parts.signals {
+            let variables = formula.variables().into_iter().map(str::to_owned).collect();
+            parts.push(Part {
+                place: kept(name),
+                part: "formula",
+                variables,
+                coordinates: Vec::new(),
+            });
+        }
         for (event, given) in self.given() {
             parts.push(Part::reading(event, "guard", given.guard.predicate()));
             let assignments = given.assignments.iter();

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::signals::listed;
+
 /// Why the parts do not make an automaton.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -105,6 +107,20 @@ pub enum BuildError {
     ParameterNameTaken {
         /// The name.
         parameter: String,
+    },
+    /// A signal is called like a coordinate, a parameter or another signal.
+    #[error(
+        "signal `{signal}` is called like a coordinate, a parameter or another signal: rename one"
+    )]
+    SignalNameTaken {
+        /// The name.
+        signal: String,
+    },
+    /// Signals depend on each other in a cycle.
+    #[error("no signal can depend on itself: {}", listed(signals))]
+    SignalCycle {
+        /// The names along the cycle, the first of them again at its end.
+        signals: Vec<String>,
     },
     /// A parameter is infinite or NaN.
     #[error("parameter `{parameter}` is {value}: it must be a finite number")]

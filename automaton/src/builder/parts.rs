@@ -9,6 +9,7 @@ use pleach_guards::{Guard, Predicate};
 use crate::flow::Rate;
 use crate::law::Command;
 use crate::reset::Assignment;
+use crate::signals::Signal;
 
 /// Locations, events, flows and resets are numbers here; the builder has what they stand for.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +32,8 @@ pub(super) struct Parts {
     pub(super) ranges: Vec<(String, RangeInclusive<f64>)>,
     /// Names that stand for numbers, with these.
     pub(super) parameters: Vec<(String, f64)>,
+    /// Names that stand for formulas, with these.
+    pub(super) signals: Vec<Signal>,
     /// The names of all variables, where the type of the state has them.
     pub(super) known: Option<Vec<&'static str>>,
     /// The names of all variables and propositions, where the state is not its coordinates.
@@ -63,6 +66,13 @@ impl Parts {
     /// The locations that have flows.
     pub(super) fn described(&self) -> impl Iterator<Item = usize> {
         self.flows.iter().map(|(location, _)| *location)
+    }
+
+    /// What is given for rows.
+    pub(super) fn given_mut(&mut self) -> impl Iterator<Item = &mut Given> {
+        let conditions = self.conditions.iter_mut().map(|(_, given)| given);
+        let edges = self.edges.iter_mut().map(|(_, given)| given);
+        conditions.chain(edges).chain(self.transfers.iter_mut().map(|(_, given)| given))
     }
 
     /// The locations that have invariants.

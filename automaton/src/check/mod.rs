@@ -113,7 +113,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
 
     /// As [`check`](Self::check), with as much work for each question as `effort` says.
     pub fn check_with(&self, effort: Effort) -> Report {
-        let model = Model::of(&self.outline());
+        let model = Model::of(&self.outline(), &[]);
         let (inquiry, _) = examined(&model, effort);
         inquiry.report.finished()
     }

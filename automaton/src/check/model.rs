@@ -9,6 +9,7 @@ use super::report::FindingPlace;
 use crate::decision::{Region, State};
 use crate::outline::{self, Outline};
 use crate::reset::{Assignment, NewValue};
+use crate::signals::Signal;
 
 /// An automaton, alone or as a component.
 #[derive(Clone, Debug)]
@@ -77,7 +78,8 @@ pub(crate) enum Effect {
 }
 
 impl Model {
-    pub(crate) fn of(automaton: &Outline<'_>) -> Self {
+    /// The automaton, with formulas in the place of the coordinates that are wired.
+    pub(crate) fn of(automaton: &Outline<'_>, wiring: &[Signal]) -> Self {
         let modes = automaton.modes.iter().map(|mode| Mode {
             name: mode.name,
             motion: mode.flow.map_or(Motion::Rates(Vec::new()), motion),
@@ -108,10 +110,12 @@ impl Model {
             inputs: Vec::new(),
             continuation: None,
         };
-        if !automaton.parameters.is_empty() {
-            model.substitute(&automaton.numbers());
+        if let Some(formulas) = automaton.formulas(wiring) {
+            model.substitute(&formulas);
         }
+        let is_wired = |name: &str| wiring.iter().any(|(wired, _)| wired == name);
         let declared = automaton.known.into_iter().flatten().map(|name| (*name).to_owned());
+        let declared = declared.filter(|name| !is_wired(name));
         let propositions = propositions_of(automaton);
         let named = model.variables().into_iter().chain(propositions.iter().cloned());
         let names: Vec<String> = declared.chain(named).collect();
@@ -128,24 +132,40 @@ impl Model {
         model
     }
 
-    fn substitute(&mut self, numbers: &Substitution) {
-        let change = |formulas: &mut Vec<(String, Expression)>| {
-            formulas.iter_mut().for_each(|(_, formula)| *formula = formula.substitute(numbers));
+    /// The first location in which the variable called `name` flows or is given a value.
+    pub(crate) fn changes(&self, name: &str) -> Option<&'static str> {
+        let is_given = |given: &[(String, Expression)]| given.iter().any(|(own, _)| own == name);
+        let flows = self.modes.iter().find(|mode| is_given(mode.rates()));
+        let resets = self.transitions.iter().filter(|one| is_given(one.assignments()));
+        let resets = resets.map(|one| &self.modes[one.source]);
+        flows.into_iter().chain(resets).map(|mode| mode.name).next()
+    }
+
+    /// Whether all flows and resets are formulas.
+    pub(crate) fn is_data(&self) -> bool {
+        let is_function = |one: &Transition| matches!(one.effect, Effect::Function(_));
+        let flows = self.modes.iter().any(|mode| matches!(mode.motion, Motion::Function(_)));
+        !(flows || self.transitions.iter().any(is_function))
+    }
+
+    fn substitute(&mut self, formulas: &Substitution) {
+        let change = |listed: &mut Vec<(String, Expression)>| {
+            listed.iter_mut().for_each(|(_, formula)| *formula = formula.substitute(formulas));
         };
         for mode in &mut self.modes {
-            mode.invariant = mode.invariant.substitute(numbers);
+            mode.invariant = mode.invariant.substitute(formulas);
             if let Motion::Rates(rates) = &mut mode.motion {
                 change(rates);
             }
         }
         for transition in &mut self.transitions {
-            let guard = transition.guard.predicate().substitute(numbers);
+            let guard = transition.guard.predicate().substitute(formulas);
             transition.guard = Guard::new(transition.guard.name(), guard);
             if let Effect::Assignments(assignments) = &mut transition.effect {
                 change(assignments);
             }
             let ends = transition.intervals.iter_mut().flat_map(|(_, ends)| ends);
-            ends.for_each(|end| *end = end.substitute(numbers));
+            ends.for_each(|end| *end = end.substitute(formulas));
         }
     }
 

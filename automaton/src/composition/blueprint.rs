@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use pleach_discrete::{Event, Location, Urgency};
+use pleach_discrete::{Event, Location, Urgency, first_mentions};
 use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{
     CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Sides,
@@ -15,8 +15,10 @@ use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
 use crate::diagram::sketch::Sketch;
 use crate::flow::{self, Flow, Rate};
+use crate::named::kept;
 use crate::outline::{Motion, Outline, Transition};
 use crate::reset::{Assignment, NewValue, Reset};
+use crate::signals::Signal;
 
 /// Locations and events are numbers here, in the order of `ALL`, and formulas are compiled against
 /// the coordinates of the automaton's own state.
@@ -109,12 +111,17 @@ struct Functions {
     resets: Vec<Option<Change>>,
 }
 
+/// The formulas that a component reads in the place of some of its coordinates, by their names.
+pub(crate) type Wiring = [Signal];
+
 impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
+    /// The variables of the wiring become coordinates, after those that it does not replace.
+    ///
     /// # Errors
     ///
     /// The first variable that is none of the coordinates; [`Builder::build`](crate::Builder::build)
     /// refuses them for automata that begin with their coordinates.
-    pub(crate) fn blueprint(&self) -> Result<Blueprint, EvaluationError> {
+    pub(crate) fn blueprint(&self, wiring: &Wiring) -> Result<Blueprint, EvaluationError> {
         let shape = self.initial_state();
         let mut functions = Functions { flows: Vec::new(), resets: Vec::new() };
         for mode in &self.modes {
@@ -123,7 +130,15 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         for transition in self.graph.edge_weights() {
             functions.resets.push(change(&transition.reset, shape));
         }
-        Blueprint::of(&self.outline(), self.names(), functions)
+        let is_replaced = |name: &str| wiring.iter().any(|(replaced, _)| replaced == name);
+        let own = self.names().iter().copied().filter(|name| !is_replaced(name));
+        let read = wiring.iter().flat_map(|(_, formula)| formula.variables());
+        Blueprint::of(
+            &self.outline(),
+            &first_mentions(own.chain(read.map(kept))),
+            wiring,
+            functions,
+        )
     }
 }
 
@@ -131,10 +146,11 @@ impl Blueprint {
     fn of(
         automaton: &Outline<'_>,
         names: &[&'static str],
+        wiring: &Wiring,
         mut functions: Functions,
     ) -> Result<Blueprint, EvaluationError> {
-        let numbers = (!automaton.parameters.is_empty()).then(|| automaton.numbers());
-        let compiler = Compiler { names, numbers };
+        let formulas = automaton.formulas(wiring);
+        let compiler = Compiler { names, formulas };
         let mut modes = Vec::with_capacity(automaton.modes.len());
         for (mode, function) in automaton.modes.iter().zip(&mut functions.flows) {
             let mut leaving = Vec::with_capacity(mode.leaving.len());
@@ -176,8 +192,8 @@ impl Blueprint {
 /// Compiles formulas over coordinates, with numbers in the place of parameters.
 struct Compiler<'a> {
     names: &'a [&'static str],
-    /// None without parameters: formulas then stay as they are, and functions the ones they were.
-    numbers: Option<Substitution>,
+    /// What stands for parameters and for coordinates that are wired.
+    formulas: Option<Substitution>,
 }
 
 impl Compiler<'_> {
@@ -204,12 +220,12 @@ impl Compiler<'_> {
     }
 
     fn condition(&self, predicate: &Predicate) -> Result<Condition, EvaluationError> {
-        Condition::of(&self.in_numbers(predicate, Predicate::substitute), self.names)
+        Condition::of(&self.resolved(predicate, Predicate::substitute), self.names)
     }
 
-    fn in_numbers<T: Clone>(&self, formula: &T, substitute: fn(&T, &Substitution) -> T) -> T {
-        match &self.numbers {
-            Some(numbers) => substitute(formula, numbers),
+    fn resolved<T: Clone>(&self, formula: &T, substitute: fn(&T, &Substitution) -> T) -> T {
+        match &self.formulas {
+            Some(formulas) => substitute(formula, formulas),
             None => formula.clone(),
         }
     }
@@ -219,14 +235,14 @@ impl Compiler<'_> {
         let rate = |one: &Rate| {
             Ok((
                 self.place_of(one.coordinate())?,
-                self.in_numbers(one.rate(), Expression::substitute),
+                self.resolved(one.rate(), Expression::substitute),
             ))
         };
         rates.iter().map(rate).collect()
     }
 
     fn assigned(&self, assignment: &Assignment) -> Result<(usize, Assigned), EvaluationError> {
-        let assigned = match self.in_numbers(assignment.value(), NewValue::substitute) {
+        let assigned = match self.resolved(assignment.value(), NewValue::substitute) {
             NewValue::Exactly(value) => Assigned::Value(value.compile(self.names)?),
             NewValue::Within(lower, upper) => {
                 Assigned::Interval([lower.compile(self.names)?, upper.compile(self.names)?])

@@ -10,12 +10,13 @@ use pleach_guards::{EvaluationError, Valuation};
 
 pub use error::CompositionError;
 
-use super::blueprint::Blueprint;
+use super::blueprint::{Blueprint, Wiring};
 use super::sampler::Sampler;
 use super::{Accumulation, Channel, Component, Composition};
 use crate::automaton::Automaton;
 use crate::check::model::Model;
 use crate::coordinates::Coordinates;
+use crate::signals::Signal;
 
 /// A [`Composition`] under construction.
 #[derive(Default)]
@@ -41,10 +42,18 @@ struct Part {
     blueprint: Arc<Blueprint>,
     model: Arc<Model>,
     initial: Vec<f64>,
+    /// Names of formulas of the coordinates, with these.
+    signals: Vec<Signal>,
+    /// Compiles it anew, with formulas in the place of coordinates.
+    compile: Arc<Compile>,
     renamed: Vec<(String, String)>,
     accumulation: Option<Accumulation>,
     continuation: Option<usize>,
 }
+
+/// An automaton as runs and as checks read it.
+type Compiled = (Arc<Blueprint>, Arc<Model>);
+type Compile = dyn Fn(&Wiring) -> Result<Compiled, EvaluationError>;
 
 impl CompositionBuilder {
     /// Adds `automaton` as a component; it starts in the initial state of the automaton.
@@ -72,38 +81,49 @@ impl CompositionBuilder {
         automaton: &Automaton<L, E, S>,
         state: S,
     ) -> Self {
-        let model = || Model::of(&automaton.outline());
-        self.add_part(name, automaton.blueprint(), &model, &state)
+        let numbers = automaton.numbers();
+        let signals = automaton.signals();
+        let signals = signals.map(|(name, it)| (name.to_owned(), it.substitute(&numbers)));
+        let signals = signals.collect();
+        let automaton = automaton.clone();
+        let compile = Arc::new(move |wiring: &Wiring| {
+            let blueprint = automaton.blueprint(wiring)?;
+            let model = Model::of(&automaton.outline(), wiring);
+            Ok((Arc::new(blueprint), Arc::new(model)))
+        });
+        self.add_part(name, compile, signals, &state)
     }
 
     fn add_part(
         mut self,
         name: &str,
-        blueprint: Result<Blueprint, EvaluationError>,
-        model: &dyn Fn() -> Model,
+        compile: Arc<Compile>,
+        signals: Vec<Signal>,
         state: &dyn Valuation,
     ) -> Self {
-        let initial = |blueprint: Blueprint| -> Result<(Blueprint, Vec<f64>), EvaluationError> {
+        let initial = |compiled: Compiled| -> Result<(Compiled, Vec<f64>), EvaluationError> {
             let value = |name: &&'static str| {
                 let unknown = || EvaluationError::UnknownVariable { variable: (*name).to_owned() };
                 state.value(name).ok_or_else(unknown)
             };
-            let values = blueprint.coordinates.iter().map(value).collect::<Result<_, _>>()?;
-            Ok((blueprint, values))
+            let values = compiled.0.coordinates.iter().map(value).collect::<Result<_, _>>()?;
+            Ok((compiled, values))
         };
-        match blueprint.and_then(initial) {
-            Ok((blueprint, initial)) if initial.iter().any(|value| value.is_nan()) => {
+        match compile(&[]).and_then(initial) {
+            Ok(((blueprint, _), initial)) if initial.iter().any(|value| value.is_nan()) => {
                 let named = blueprint.coordinates.iter().zip(&initial);
                 for (variable, _) in named.filter(|(_, value)| value.is_nan()) {
                     let component = name.to_owned();
                     self.fault(CompositionError::InitialNotANumber { component, variable });
                 }
             }
-            Ok((blueprint, initial)) => self.parts.push(Part {
+            Ok(((blueprint, model), initial)) => self.parts.push(Part {
                 name: name.to_owned(),
-                blueprint: Arc::new(blueprint),
-                model: Arc::new(model()),
+                blueprint,
+                model,
                 initial,
+                signals,
+                compile,
                 renamed: Vec::new(),
                 accumulation: None,
                 continuation: None,
@@ -172,8 +192,8 @@ impl CompositionBuilder {
         self
     }
 
-    /// The coordinate `input` of a component is the coordinate `output` of another; both are
-    /// written `component.coordinate`.
+    /// The coordinate `input` of a component is the coordinate or the
+    /// [signal](crate::Builder::signal) `output` of another; both are written `component.coordinate`.
     pub fn connect(mut self, output: &str, input: &str) -> Self {
         self.connections.push((output.to_owned(), input.to_owned()));
         self
@@ -211,15 +231,18 @@ impl CompositionBuilder {
         }
         self = self.join_samplers()?.join_channels()?;
         self.check_names()?;
+        self.wire_signals()?;
         let sources = self.sources()?;
         let mut composition = Composition {
             components: Vec::with_capacity(self.parts.len()),
             labels: Vec::new(),
             variables: Vec::new(),
             initial: Vec::new(),
+            signals: Vec::new(),
             groups: Vec::new(),
         };
         let slots = self.lay_out(&sources, &mut composition);
+        composition.signals = self.signals(&composition.variables, &slots);
         let labels = self.labels()?;
         for (index, part) in self.parts.into_iter().enumerate() {
             let first = slots.offsets[index];

@@ -64,7 +64,7 @@
 //! let trajectory = both.run(2.0)?;
 //! let jumps: Vec<_> = trajectory.jumps().iter().map(|jump| (jump.at.t, &*jump.label)).collect();
 //! assert_eq!(jumps, [(1.0, "sensor.report"), (1.25, "logger.hear"), (2.0, "sensor.report")]);
-//! assert_eq!(trajectory.value("logger.last", 1.5), Some(3.0));
+//! assert_eq!(trajectory.value("logger.last", 1.5), Ok(3.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -5,8 +5,9 @@
 //! * a **label** is an event that every component which knows an event of that name takes
 //!   together with the others: one jump, and only where all their guards hold. It is forced as soon
 //!   as it is for one of them. Events of other names are each component's own;
-//! * a **connection** lets a component read a coordinate of another under a name of its own. What
-//!   is read belongs to the other component; a flow or a reset cannot change it.
+//! * a **connection** lets a component read a coordinate or a [signal](crate::Builder::signal) of
+//!   another under a name of its own. What is read belongs to the other component; a flow or a reset
+//!   cannot change it.
 //!
 //! A [`Channel`] between two components carries messages from the one to the other: a component by
 //! itself, joined by labels to the sender and to the receiver.
@@ -91,6 +92,8 @@ mod tension;
 
 use std::sync::Arc;
 
+use pleach_guards::Expression;
+
 /// How flows are integrated; a part of the [`Settings`].
 pub use pleach_continuous::flow::Method;
 
@@ -106,6 +109,7 @@ use blueprint::Blueprint;
 use group::Group;
 
 use crate::check::model::Model;
+use crate::signals::Signal;
 
 /// Automata side by side; see the [module](self).
 #[derive(Clone)]
@@ -116,6 +120,8 @@ pub struct Composition {
     variables: Vec<String>,
     /// By slot: the values at the start.
     initial: Vec<f64>,
+    /// Names of formulas of the variables, with these.
+    signals: Vec<Signal>,
     /// What moves and jumps by itself.
     groups: Vec<Group>,
 }
@@ -169,6 +175,11 @@ impl Composition {
         &self.variables
     }
 
+    /// The signals of the components, each with its formula of variables.
+    pub fn signals(&self) -> impl ExactSizeIterator<Item = (&str, &Expression)> {
+        self.signals.iter().map(|(name, formula)| (name.as_str(), formula))
+    }
+
     /// The names of the locations of a component, in the order of their type; none for a component
     /// that does not exist.
     pub fn locations(&self, component: usize) -> impl Iterator<Item = &'static str> {
@@ -186,6 +197,11 @@ impl Composition {
 }
 
 impl Composition {
+    /// The names of the components that move.
+    fn names_of(&self, moves: &[Move]) -> impl Iterator<Item = &str> {
+        moves.iter().map(|one| &*self.components[one.component].name)
+    }
+
     /// What the event of a move is called.
     fn event_of(&self, one: &Move) -> String {
         let component = &self.components[one.component];

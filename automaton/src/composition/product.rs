@@ -72,6 +72,9 @@ impl Composition {
         let coordinates = state.coordinates();
         let first = product.name(&product.combinations[0]);
         let mut builder = Automaton::<Name, Name, Record>::starting_in(first).initially(state);
+        for (name, formula) in self.signals() {
+            builder = builder.signal(name, formula);
+        }
         for combination in &product.combinations {
             builder = product.add_location(builder, combination, &coordinates)?;
         }

@@ -95,17 +95,25 @@ impl Record {
         at: HybridTime,
         number: usize,
         taken: &Taken,
-        group: &Group,
+        composition: &Composition,
         values: &[f64],
     ) {
         if self.is_of_doubts {
             return;
         }
-        let first = values_of(group, values);
+        let first = values_of(&composition.groups[number], values);
         self.numbers += first.len() as u64 + OVERHEAD;
         let since = Moment::from(at.t);
         self.strands[number].stretches.push(Stretch::at(at.after_jump(), since, first));
-        self.jumps.push(JumpRecord { at, label: taken.label.clone(), moves: taken.moves.clone() });
+        let (label, moves) = (taken.label.clone(), taken.moves.clone());
+        let mut by = String::new();
+        if composition.components.len() > 1 {
+            for name in composition.names_of(&moves) {
+                let comma = if by.is_empty() { "" } else { ", " };
+                by.extend([comma, name]);
+            }
+        }
+        self.jumps.push(JumpRecord { at, label, by, moves });
     }
 
     pub(super) fn into_trajectory(
@@ -122,6 +130,7 @@ impl Record {
         let components = &composition.components;
         Trajectory {
             variables: composition.variables.clone(),
+            signals: composition.signals.clone(),
             components: components.iter().enumerate().map(participant).collect(),
             initial: components.iter().map(|component| component.blueprint.initial).collect(),
             settings,
@@ -182,7 +191,7 @@ mod tests {
         }
         let before = record.size();
         let taken = Taken { label: "never".to_owned(), moves: Vec::new(), changes: Vec::new() };
-        record.jumped(HybridTime { t: 10.0, j: 0 }, 0, &taken, &plane.groups[0], &[0.0; 2]);
+        record.jumped(HybridTime { t: 10.0, j: 0 }, 0, &taken, &plane, &[0.0; 2]);
         assert!((1..100).contains(&((record.size() - before) / 8)));
     }
 

@@ -3,7 +3,7 @@
 //! [`Composition::stream`] runs like [`Composition::run_with`], but keeps no trajectory: a
 //! [`RunObserver`] gets every flow and every jump, in their order. So the memory of a run does not
 //! grow with it. What is kept is up to observers: [`Samples`] keeps the values on a grid of times,
-//! [`CsvLog`] writes them and both sides of every jump, and `()` keeps nothing. Two observers make a
+//! [`CsvLog`] writes them with the signals and both sides of every jump, and `()` keeps nothing. Two observers make a
 //! pair of observers.
 //!
 //! ```
@@ -25,7 +25,7 @@
 //!     .build()?;
 //!
 //! let (mut samples, mut log) = (Samples::every(1.0), CsvLog::every(1.0, Vec::new()));
-//! let finish = lamp.stream(Settings::default(), 2.0, &mut (&mut samples, &mut log))?;
+//! let finish = lamp.alone()?.stream(Settings::default(), 2.0, &mut (&mut samples, &mut log))?;
 //! assert_eq!(finish.values, [1.5]);
 //! assert_eq!(samples.rows(), [(0.0, vec![0.0]), (1.0, vec![1.0]), (2.0, vec![1.5])]);
 //! let text = String::from_utf8(log.finish()?)?;
@@ -38,12 +38,8 @@ mod log;
 
 use std::ops::ControlFlow;
 
-use pleach_discrete::{Event, Location};
-
 use super::simulation::{Failure, Simulation, SimulationError, Taken};
 use super::{Composition, Move, Settings};
-use crate::automaton::Automaton;
-use crate::coordinates::Coordinates;
 use crate::executor::{Ending, Observer};
 use crate::moment::Moment;
 use crate::time::HybridTime;
@@ -100,9 +96,9 @@ pub struct Finish {
 }
 
 impl Flowing<'_> {
-    /// The names of the variables.
-    pub fn variables(&self) -> &[String] {
-        self.simulation.composition().variables()
+    /// What runs.
+    pub fn composition(&self) -> &Composition {
+        self.simulation.composition()
     }
 
     /// The locations of the components, as numbers.
@@ -117,14 +113,14 @@ impl Flowing<'_> {
 }
 
 impl Jumping<'_> {
-    /// The names of the variables.
-    pub fn variables(&self) -> &[String] {
-        self.composition.variables()
-    }
-
     /// The names of the components that take part.
     pub fn components(&self) -> impl Iterator<Item = &str> {
-        self.moves.iter().map(|one| &*self.composition.components[one.component].name)
+        self.composition.names_of(self.moves)
+    }
+
+    /// What runs.
+    pub fn composition(&self) -> &Composition {
+        self.composition
     }
 }
 
@@ -167,23 +163,6 @@ impl Composition {
     ) -> Result<Finish, SimulationError> {
         let mut view = View { composition: self, values: self.initial.clone(), observer };
         Simulation::new(self, settings, horizon)?.unrecorded().finish(&mut view)
-    }
-}
-
-impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
-    /// Runs the automaton by itself; see [`Composition::stream`].
-    ///
-    /// # Errors
-    ///
-    /// As for [`run_with`](Self::run_with).
-    pub fn stream(
-        &self,
-        settings: Settings,
-        horizon: f64,
-        observer: &mut impl RunObserver,
-    ) -> Result<Finish, SimulationError> {
-        let alone = Composition::builder().add("automaton", self).build()?;
-        alone.stream(settings, horizon, observer)
     }
 }
 

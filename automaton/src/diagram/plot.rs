@@ -9,7 +9,7 @@ use pleach_drawing::{Axis, named, power_of_ten};
 use pleach_guards::constant;
 
 use crate::executor::{Ending, Reason};
-use crate::trajectory::{FlowInterval, Trajectory};
+use crate::trajectory::{FlowInterval, Participant, Trajectory};
 use curve::Quantity;
 use sheet::{Sheet, WIDTH, area_colour, text_width};
 
@@ -95,13 +95,31 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 /// How long a run was, how many jumps it had, and why it ended, in a line.
 pub fn outcome(trajectory: &Trajectory) -> String {
     let Ending { at, reason } = trajectory.ending();
+    let place = |component: usize, location: usize| {
+        let Participant { name, locations } = &trajectory.components()[component];
+        match trajectory.components().len() {
+            1 => format!("`{}`", locations[location]),
+            _ => format!("`{}` of `{name}`", locations[location]),
+        }
+    };
     let ending = match reason {
         Reason::Horizon => "up to the horizon".to_owned(),
         Reason::Zeno(zeno) => {
             format!("Zeno: jumps accumulate at {} s", rounded(zeno.accumulation))
         }
         Reason::Finished(failure) => format!("failed: {failure}"),
-        other => format!("ended: {other:?}"),
+        Reason::Blocked => "blocked: neither time nor a transition goes on".to_owned(),
+        Reason::JumpLimit(last) => {
+            let last = last
+                .map(|last| format!(", the last into {}", place(last.component, last.location)));
+            format!("ended: more jumps at one instant than allowed{}", last.unwrap_or_default())
+        }
+        Reason::Sliding(sliding) => {
+            let [one, other] = sliding.locations.map(|location| place(sliding.component, location));
+            format!("ended: the flows of {one} and {other} lead to the boundary between them")
+        }
+        Reason::Limit(limit) => format!("ended: {limit}"),
+        Reason::Interrupted(_) => "ended: interrupted".to_owned(),
     };
     let jumps = trajectory.jumps().len();
     let noun = if jumps == 1 { "jump" } else { "jumps" };

@@ -10,8 +10,8 @@ use std::collections::BinaryHeap;
 
 use pleach_continuous::flow::{Curve, Piece};
 use pleach_guards::{
-    CompiledPredicate, Course, Enclosure, EvaluationError, Interval, Predicate, Tracker, Truth,
-    Verdict,
+    CompiledPredicate, Course, Enclosure, EvaluationError, Interval, Predicate, Substitution,
+    Tracker, Truth, Verdict,
 };
 use thiserror::Error;
 
@@ -123,7 +123,14 @@ impl Trajectory {
     /// [`Unevaluated`] where the predicate has no verdict.
     pub fn account(&self, predicate: &Predicate, instants: &[f64]) -> Result<Account, Unevaluated> {
         let unknown = |error| Unevaluated { t: 0.0, error };
-        let mut follower = Follower::new(self, predicate).map_err(unknown)?;
+        let mut follower = match self.signals.is_empty() {
+            true => Follower::new(self, predicate),
+            false => {
+                let formulas = Substitution::new(self.signals.iter().cloned());
+                Follower::new(self, &predicate.substitute(&formulas))
+            }
+        }
+        .map_err(unknown)?;
         for phase in 0..=self.jumps.len() {
             follower.follow(phase, instants)?;
         }

@@ -61,7 +61,7 @@ fn jumps_that_leave_no_time_end_the_run() {
     let begin = from(Here).on(Go).to(There).must(x().at_least(1.0)).then(x().becomes(0.0));
     let ticking = ramp().flow(There, x().rate(1.0)).transition(begin).transition(tick);
     let trajectory = run(&built(ticking), 2.0);
-    assert_eq!(trajectory.ending().reason, Reason::JumpLimit);
+    assert!(matches!(trajectory.ending().reason, Reason::JumpLimit(_)));
     assert!(trajectory.jumps().len() < 10_000, "{:?}", trajectory.ending());
     assert!((trajectory.ending().at.t - 1.0).abs() < 1e-11, "{:?}", trajectory.ending());
 }
@@ -82,7 +82,7 @@ fn limits_end_a_run_with_instant_and_reason() {
     let trajectory = touching.run_with(short, 1e6).expect("it can be run");
     assert_eq!(trajectory.ending().reason, Reason::Limit(Limit::Steps(100)));
     let at = trajectory.ending().at.t;
-    assert!(at < 1e6 && trajectory.value("x", at).is_some_and(|x| (x - at).abs() < 1e-9));
+    assert!(at < 1e6 && trajectory.value("x", at).is_ok_and(|x| (x - at).abs() < 1e-9));
 }
 
 /// Limits count in long flows, too, also where nothing but a clock ends them.
@@ -117,8 +117,8 @@ fn a_variable_may_be_infinite_from_the_start_on() {
     let start = Plane { px: f64::INFINITY, py: 1.0 };
     let trajectory = beside.run_from(start, 3.0).expect("it can be run");
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
-    assert_eq!(trajectory.value("x", 2.0), Some(f64::INFINITY));
-    assert!(trajectory.value("y", 3.0).is_some_and(|y| (y - (-3f64).exp()).abs() < 1e-9));
+    assert_eq!(trajectory.value("x", 2.0), Ok(f64::INFINITY));
+    assert!(trajectory.value("y", 3.0).is_ok_and(|y| (y - (-3f64).exp()).abs() < 1e-9));
 }
 
 /// Where the state is coarser than time, an invariant ends many numbers of seconds before it is violated.

@@ -46,8 +46,9 @@ pub(super) fn resolve(network: &mut Network<'_>) -> Result<()> {
     let of_instances = network.instances.iter_mut().flat_map(|one| one.names.values_mut());
     of_instances.chain(network.inner.values_mut()).for_each(resolve);
     network.known.retain(|name, _| !formulas.contains_key(name));
-    let named = formulas.into_iter().map(|(name, formula)| (name, Bound::Formula(formula)));
+    let named = formulas.iter().map(|(name, it)| (name.clone(), Bound::Formula(it.clone())));
     network.inner.extend(named);
+    network.outputs = formulas;
     Ok(())
 }
 

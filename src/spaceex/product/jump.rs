@@ -82,6 +82,7 @@ impl Product<'_> {
         coordinates: &BTreeMap<String, Coordinate<Record>>,
     ) -> Result<Builder<Name, Name, Record>> {
         let mut target = tuple.to_vec();
+        let shares = self.of_shares(tuple);
         let (mut guard, mut assignments, mut is_urgent) = (Vec::new(), Vec::new(), false);
         for (at, transition) in group {
             let instance = &self.network.instances[*at];
@@ -101,10 +102,9 @@ impl Product<'_> {
                     .get(&name)
                     .ok_or_else(|| wrong(format!("`{name}` cannot be assigned")))?;
                 assignments.push(match assigned {
-                    Assigned::Value(value) => coordinate.becomes(value),
-                    Assigned::Within(Some(lower), Some(upper)) => {
-                        coordinate.becomes_within(lower, upper)
-                    }
+                    Assigned::Value(value) => coordinate.becomes(value.substitute(&shares)),
+                    Assigned::Within(Some(lower), Some(upper)) => coordinate
+                        .becomes_within(lower.substitute(&shares), upper.substitute(&shares)),
                     Assigned::Within(..) => {
                         return Err(wrong(format!("`{name}'` is not bounded from both sides")));
                     }
@@ -115,7 +115,7 @@ impl Product<'_> {
         let target = target.unwrap_or(source);
         let event = Name::new(label.unwrap_or("jump"));
         let arrow = from(source).on(event).to(target);
-        let guard = Predicate::all(guard);
+        let guard = Predicate::all(guard).substitute(&shares);
         let edge = if is_urgent { arrow.must(guard) } else { arrow.may(guard) };
         Ok(builder.transition(edge.then(assignments)))
     }

@@ -52,12 +52,13 @@ impl Product<'_> {
                 }
             }
         }
+        let shares = self.of_shares(tuple);
         let mut listed: Vec<Rate<Record>> = Vec::new();
         for (variable, coordinate) in coordinates {
             match &rates {
                 None => {}
                 Some(rates) => match rates.get(variable) {
-                    Some(rate) => listed.push(coordinate.rate(rate.clone())),
+                    Some(rate) => listed.push(coordinate.rate(rate.substitute(&shares))),
                     None => {
                         return Err(SpaceExError::Model {
                             line,
@@ -71,7 +72,8 @@ impl Product<'_> {
         }
         builder = builder.flow(name, listed);
         if !invariant.is_empty() {
-            builder = builder.invariant(name, Predicate::all(invariant));
+            let invariant = Predicate::all(invariant).substitute(&shares);
+            builder = builder.invariant(name, invariant);
         }
         Ok(builder)
     }
@@ -80,7 +82,8 @@ impl Product<'_> {
     pub(super) fn is_input_bound(&self, clause: &Clause) -> bool {
         let Clause::Compare { left, right, .. } = clause else { return false };
         let is_input = |side: &Side| {
-            side.name().is_some_and(|name| self.inputs.iter().any(|(input, _)| input == name))
+            let is_known = |name: &str| self.inputs.iter().any(|(input, _)| input == name);
+            side.name().is_some_and(|name| is_known(name) || self.shares.contains_key(name))
         };
         let is_number =
             |side: &Side| matches!(side, Side::Formula(formula) if formula.evaluate(&()).is_ok());

@@ -145,7 +145,38 @@ impl Proof {
         self.doubts.is_empty()
             && matches!(self.enclosure.ending, Completion::Horizon | Completion::Everything)
     }
+
+    /// The proof; or a finer one that holds, where it does not. The states in which a guard may hold, which
+    /// jumps carry on as one set for each of the [clusters](Settings::clusters), are covered by twice
+    /// and then ten times as many when `prove` is called again.
+    ///
+    /// # Errors
+    ///
+    /// Those of `prove`.
+    pub fn refined(
+        self,
+        settings: &Settings,
+        mut prove: impl FnMut(&Settings) -> Result<Proof, ReachError>,
+    ) -> Result<Proof, ReachError> {
+        let Enclosure { visits, ending } = &self.enclosure;
+        let jumps = visits.iter().any(|visit| visit.depth > 0);
+        if self.holds() || !jumps || *ending == Completion::Stopped {
+            return Ok(self);
+        }
+        let segments = visits.iter().map(|visit| visit.segments.len()).sum();
+        for factor in FINER {
+            let finer = prove(&settings.finer(factor, segments))?;
+            if finer.holds() {
+                return Ok(finer);
+            }
+        }
+        Ok(self)
+    }
 }
+
+/// How many times as many sets cover the states at guards in further attempts. More sets are finer, and
+/// lead to more of them at each jump.
+const FINER: [usize; 2] = [2, 10];
 
 /// Encloses all runs of a model and looks where they meet forbidden states.
 ///
@@ -231,7 +262,7 @@ pub(super) fn check_starts(model: &Model, starts: &[StateSet]) -> Result<(), Rea
 /// Whether a run of `automaton` that begins in one of `starts` comes to a forbidden state.
 ///
 /// First all runs are enclosed; where that does not decide, single runs are searched for one that
-/// does.
+/// does, and then all are enclosed in [finer](Proof::refined) sets.
 ///
 /// # Errors
 ///
@@ -273,13 +304,16 @@ pub fn verify<L: Location + Sync, E: Event + Sync, S: Coordinates>(
     effort: &Effort,
 ) -> Result<Answer, ReachError> {
     let model = Model::with_uncertain(automaton, uncertain)?;
-    let proof = prove(&model, starts, forbidden, settings, &mut |_| ControlFlow::Continue(()))?;
+    let progress = &mut |_| ControlFlow::Continue(());
+    let proof = prove(&model, starts, forbidden, settings, progress)?;
     if proof.holds() {
         return Ok(Answer::Holds(proof));
     }
     let found = falsify(automaton, uncertain, starts, forbidden, settings, effort);
-    Ok(match found {
-        Some(found) if found.is_violation => Answer::Violated(Box::new(found)),
-        _ => Answer::Undecided(proof),
-    })
+    if let Some(found) = found.filter(|found| found.is_violation) {
+        return Ok(Answer::Violated(Box::new(found)));
+    }
+    let proof =
+        proof.refined(settings, |finer| prove(&model, starts, forbidden, finer, progress))?;
+    Ok(if proof.holds() { Answer::Holds(proof) } else { Answer::Undecided(proof) })
 }

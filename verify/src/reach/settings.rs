@@ -46,6 +46,9 @@ pub struct Settings {
     pub tolerance: f64,
 }
 
+/// How many segments another attempt may take, however short the first was.
+const ATTEMPT: usize = 20_000;
+
 /// A setting makes no sense.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("`{setting}` is {value}, and has to be {expected}")]
@@ -80,6 +83,18 @@ impl Settings {
     /// How long runs can go on that have lasted for `elapsed`, at least.
     pub(super) fn time_left(&self, elapsed: Interval) -> f64 {
         plus_up(self.horizon, -elapsed.lower())
+    }
+
+    /// How long runs have lasted that are not beyond the horizon; none if all are.
+    pub(super) fn in_time(&self, elapsed: Interval) -> Option<Interval> {
+        Interval::new(elapsed.lower(), elapsed.upper().min(self.horizon)).ok()
+    }
+
+    /// More sets at guards, for another attempt after one that took this many segments, which takes a few
+    /// times as long at most.
+    pub(super) fn finer(&self, factor: usize, segments: usize) -> Self {
+        let segment_limit = self.segment_limit.min((4 * segments).max(ATTEMPT));
+        Settings { clusters: factor * self.clusters, segment_limit, ..self.clone() }
     }
 
     /// Says which setting makes no sense, if one does.

@@ -35,7 +35,9 @@ pub fn dot(left: &[Interval], right: &[Interval]) -> Interval {
 /// Σ a b over pairs of intervals.
 pub(super) fn sum_of_products(pairs: impl Iterator<Item = (Interval, Interval)>) -> Interval {
     let (mut lower, mut upper, mut size, mut count) = (0.0, 0.0, 0.0, 0);
+    let mut last = None;
     for (a, b) in pairs.filter(|(a, b)| !is_zero(*a) && !is_zero(*b)) {
+        last = Some((a, b));
         let corners = [
             a.lower() * b.lower(),
             a.lower() * b.upper(),
@@ -49,20 +51,29 @@ pub(super) fn sum_of_products(pairs: impl Iterator<Item = (Interval, Interval)>)
         size += least.abs().max(most.abs());
         count += 1;
     }
-    enclosed_sum(lower, upper, size, count)
+    match last {
+        // Often exact: what rests is to stay as it is, however often that is computed.
+        Some((a, b)) if count == 1 => a * b,
+        _ => enclosed_sum(lower, upper, size, count),
+    }
 }
 
 /// Σ aᵢ bᵢ for a vector of intervals and one of numbers.
 pub fn dot_numbers(left: &[Interval], right: &[f64]) -> Interval {
     let (mut lower, mut upper, mut size, mut count) = (0.0, 0.0, 0.0, 0);
+    let mut last = None;
     for (a, &b) in left.iter().zip(right).filter(|(a, b)| !is_zero(**a) && **b != 0.0) {
+        last = Some((a, b));
         let (one, other) = (a.lower() * b, a.upper() * b);
         lower += one.min(other);
         upper += one.max(other);
         size += one.abs().max(other.abs());
         count += 1;
     }
-    enclosed_sum(lower, upper, size, count)
+    match last {
+        Some((a, b)) if count == 1 => *a * Interval::point(b),
+        _ => enclosed_sum(lower, upper, size, count),
+    }
 }
 
 /// A matrix of intervals: every matrix with entries in them.

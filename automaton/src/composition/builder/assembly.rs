@@ -1,8 +1,11 @@
 //! How parts are joined: channels, connections, slots and labels.
 
+use pleach_guards::{Expression, Substitution, variable};
+
 use super::{CompositionBuilder, CompositionError, Part};
 use crate::composition::blueprint::{Change, Mode, ModeMotion};
 use crate::composition::{Component, Composition, Label};
+use crate::signals::{Signal, resolved};
 
 impl CompositionBuilder {
     /// Turns clocks that sample into components.
@@ -75,7 +78,11 @@ impl CompositionBuilder {
         for part in &self.parts {
             let own = input.strip_prefix(&*part.name).and_then(|it| it.strip_prefix('.'));
             let Some(coordinate) = own else { continue };
-            if let Some(reader) = part.model.reader_of(coordinate, part.event(arrive)) {
+            let reads = |formula: &Expression| formula.variables().contains(coordinate);
+            let signal = || part.signals.iter().find(|(_, formula)| reads(formula));
+            let reader = part.model.reader_of(coordinate, part.event(arrive));
+            let reader = reader.or_else(|| Some(format!("the signal `{}`", signal()?.0)));
+            if let Some(reader) = reader {
                 let (component, coordinate) = (part.name.clone(), coordinate.to_owned());
                 return Err(CompositionError::InTransit { component, coordinate, reader });
             }
@@ -91,7 +98,8 @@ impl CompositionBuilder {
             return Err(CompositionError::NameTwice { name });
         }
         // `q.x` of a component `p` is called like `x` of a component `p.q`.
-        match repeated(self.full_names()) {
+        let signals = self.full_signals().into_iter().map(|(name, _)| name);
+        match repeated(self.full_names().into_iter().chain(signals).collect()) {
             Some(variable) => Err(CompositionError::VariableTwice { variable }),
             None => Ok(()),
         }
@@ -129,11 +137,89 @@ impl CompositionBuilder {
     }
 
     fn full_names(&self) -> Vec<String> {
+        self.parts.iter().flat_map(Part::full_names).collect()
+    }
+
+    /// The signals of all components, as formulas of coordinates of the whole.
+    fn full_signals(&self) -> Vec<Signal> {
         let of_part = |part: &Part| {
-            let named = |coordinate: &&'static str| format!("{}.{coordinate}", part.name);
-            part.blueprint.coordinates.iter().map(named).collect::<Vec<_>>()
+            let full_names: Vec<String> = part.full_names().collect();
+            let own = part.blueprint.coordinates.iter().copied();
+            part.signals_in(own.zip(full_names.iter().map(String::as_str)))
         };
-        self.parts.iter().flat_map(of_part).collect()
+        self.parts.iter().filter(|part| !part.signals.is_empty()).flat_map(of_part).collect()
+    }
+
+    /// Gives components the formulas of the signals to which their inputs are connected, and connects
+    /// what these read.
+    pub(super) fn wire_signals(&mut self) -> Result<(), CompositionError> {
+        let signals = self.full_signals();
+        let is_signal = |name: &str| signals.iter().any(|(signal, _)| signal == name);
+        let connections = std::mem::take(&mut self.connections);
+        let (wires, plain): (Vec<_>, Vec<_>) =
+            connections.into_iter().partition(|(output, _)| is_signal(output));
+        self.connections = plain;
+        if wires.is_empty() {
+            return Ok(());
+        }
+        self.sources()?;
+        self.check_wires(&wires)?;
+        let inputs = wires.iter().chain(&self.connections);
+        let inputs = inputs.map(|(output, input)| (input.clone(), variable(output)));
+        let formulas = resolved(&signals.into_iter().chain(inputs).collect::<Vec<_>>())
+            .map_err(|signals| CompositionError::SignalCycle { signals })?;
+        let is_wired = |name: &str| wires.iter().any(|(_, input)| input == name);
+        let formulas: Vec<Signal> =
+            formulas.into_iter().filter(|(name, _)| is_wired(name)).collect();
+        for part in &mut self.parts {
+            self.connections.extend(part.wire(&formulas)?);
+        }
+        self.check_names()
+    }
+
+    /// An input of formulas has one source, is read by nobody, and is changed by nothing.
+    fn check_wires(&self, wires: &[(String, String)]) -> Result<(), CompositionError> {
+        for (output, input) in wires {
+            let owner = self.parts.iter().find_map(|part| Some((part, part.own_name(input)?)));
+            let Some((part, own)) = owner else {
+                return Err(CompositionError::UnknownVariable { variable: input.clone() });
+            };
+            let ends = || wires.iter().chain(&self.connections);
+            let reason = if ends().filter(|(_, other)| other == input).count() > 1 {
+                "it is connected already"
+            } else if ends().any(|(other, _)| other == input) {
+                "an input cannot be read in turn: connect both to the signal itself"
+            } else if !part.model.is_data() {
+                "formulas can read a signal, and its component has a flow or a reset that is a function"
+            } else if let Some(location) = part.model.changes(own) {
+                let component = part.name.clone();
+                return Err(CompositionError::InputChanged {
+                    component,
+                    coordinate: own,
+                    location,
+                });
+            } else {
+                continue;
+            };
+            let (output, input) = (output.clone(), input.clone());
+            return Err(CompositionError::Connection { output, input, reason });
+        }
+        Ok(())
+    }
+
+    /// The signals as formulas of variables of the composition.
+    pub(super) fn signals(&self, variables: &[String], layout: &Layout) -> Vec<Signal> {
+        let of_part = |(part, first): (&Part, &usize)| {
+            let slots = &layout.slots[*first..];
+            let own = part.blueprint.coordinates.iter().zip(slots);
+            let named = part.signals_in(own.map(|(own, slot)| (*own, &*variables[*slot])));
+            let is_alone = self.parts.len() == 1;
+            let brief = part.signals.iter().zip(named).map(move |((own, _), (name, formula))| {
+                (if is_alone { own.clone() } else { name }, formula)
+            });
+            brief.collect::<Vec<_>>()
+        };
+        self.parts.iter().zip(&layout.offsets).flat_map(of_part).collect()
     }
 
     /// Gives every coordinate that is no input a slot, and every input the slot of what it reads.
@@ -199,6 +285,60 @@ pub(super) struct Layout {
 }
 
 impl Part {
+    /// The coordinates as `component.coordinate`.
+    fn full_names(&self) -> impl Iterator<Item = String> {
+        self.blueprint.coordinates.iter().map(|own| format!("{}.{own}", self.name))
+    }
+
+    /// What a coordinate of the whole is called here, if it is one of this component.
+    fn own_name(&self, name: &str) -> Option<&'static str> {
+        let place = self.full_names().position(|full| full == name)?;
+        Some(self.blueprint.coordinates[place])
+    }
+
+    /// The signals as `component.signal`, with other names for the coordinates in their formulas.
+    fn signals_in<'a>(&self, names: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<Signal> {
+        let renaming = Substitution::renaming(names);
+        let signals = self.signals.iter();
+        let named = signals
+            .map(|(own, formula)| (format!("{}.{own}", self.name), formula.substitute(&renaming)));
+        named.collect()
+    }
+
+    /// Reads formulas, of coordinates of the whole, in the place of those inputs that are among them; and
+    /// says what is to be connected for that.
+    fn wire(&mut self, formulas: &[Signal]) -> Result<Vec<(String, String)>, CompositionError> {
+        let full_names: Vec<String> = self.full_names().collect();
+        let own_names =
+            full_names.iter().map(String::as_str).zip(self.blueprint.coordinates.iter().copied());
+        let renaming = Substitution::renaming(own_names);
+        let wiring = formulas.iter().filter_map(|(input, formula)| {
+            Some((self.own_name(input)?.to_owned(), formula.substitute(&renaming)))
+        });
+        let wiring: Vec<Signal> = wiring.collect();
+        if wiring.is_empty() {
+            return Ok(Vec::new());
+        }
+        let fault = |source| CompositionError::Formula { component: self.name.clone(), source };
+        let (blueprint, model) = (self.compile)(&wiring).map_err(fault)?;
+        let before = self.blueprint.coordinates.iter().zip(&self.initial);
+        let value =
+            |name: &&str| before.clone().find(|(known, _)| *known == name).map(|(_, value)| *value);
+        let values: Vec<Option<f64>> = blueprint.coordinates.iter().map(value).collect();
+        let named = blueprint.coordinates.iter().zip(&values);
+        let read = named
+            .filter(|(_, value)| value.is_none())
+            .map(|(name, _)| ((*name).to_owned(), format!("{}.{name}", self.name)));
+        let read = read.collect();
+        self.initial = values.into_iter().map(Option::unwrap_or_default).collect();
+        let formulas = Substitution::new(wiring);
+        for (_, formula) in &mut self.signals {
+            *formula = formula.substitute(&formulas);
+        }
+        (self.blueprint, self.model) = (blueprint, model);
+        Ok(read)
+    }
+
     /// The number of the event that goes by `name` in this component.
     pub(super) fn event(&self, name: &str) -> Option<usize> {
         self.event_names().position(|event| event == name)

@@ -3,6 +3,8 @@
 use pleach_guards::EvaluationError;
 use thiserror::Error;
 
+use crate::signals::listed;
+
 /// Why the parts do not make a composition.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -76,6 +78,13 @@ pub enum CompositionError {
         input: String,
         /// What stands against it.
         reason: &'static str,
+    },
+    /// Signals of components depend on each other in a cycle.
+    #[error("no signal can depend on itself: {}", listed(signals))]
+    SignalCycle {
+        /// The names along the cycle, of signals and of inputs that read them, the first of them again at
+        /// its end.
+        signals: Vec<String>,
     },
     /// An event cannot be taken at even intervals.
     #[error("`{event}` cannot be sampled: {reason}")]

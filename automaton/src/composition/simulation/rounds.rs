@@ -154,13 +154,7 @@ impl Simulation<'_> {
         self.groups[group].is_eager = false;
         self.groups[group].must_leave = false;
         if let Some(record) = &mut self.record {
-            record.jumped(
-                round.now(),
-                group,
-                &taken,
-                &self.composition.groups[group],
-                &self.values,
-            );
+            record.jumped(round.now(), group, &taken, self.composition, &self.values);
             let memory = self.settings.memory_limit;
             if record.size() > memory {
                 return Err(Limit::Memory(memory).into());

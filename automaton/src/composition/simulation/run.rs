@@ -2,17 +2,26 @@
 
 use pleach_discrete::{Event, Location};
 
-use super::{Failure, Simulation, SimulationError};
+use super::{Failure, Move, Simulation, SimulationError};
 use crate::automaton::Automaton;
 use crate::composition::record::Record;
 use crate::composition::stream::Finish;
-use crate::composition::{Composition, Settings};
+use crate::composition::{Composition, CompositionError, Settings};
 use crate::coordinates::Coordinates;
-use crate::executor::{Ending, Executor, Observer, Reason};
+use crate::executor::{Ending, Executor, LastJump, Observer, Reason};
 use crate::time::HybridTime;
 use crate::trajectory::Trajectory;
 
 impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
+    /// The automaton as the only component of a composition, from its initial state.
+    ///
+    /// # Errors
+    ///
+    /// [`CompositionError`] if it has no initial state.
+    pub fn alone(&self) -> Result<Composition, CompositionError> {
+        Composition::builder().add("automaton", self).build()
+    }
+
     /// Runs the automaton by itself, from its initial state, for `horizon` seconds.
     ///
     /// # Errors
@@ -20,7 +29,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     /// [`SimulationError`] if it has no initial state, or the horizon is negative or not finite.
     /// What happens on the way is told by the [ending](Trajectory::ending) of the trajectory.
     pub fn run(&self, horizon: f64) -> Result<Trajectory, SimulationError> {
-        Composition::builder().add("automaton", self).build()?.run(horizon)
+        self.alone()?.run(horizon)
     }
 
     /// Runs the automaton by itself with the given settings.
@@ -33,7 +42,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         settings: Settings,
         horizon: f64,
     ) -> Result<Trajectory, SimulationError> {
-        Composition::builder().add("automaton", self).build()?.run_with(settings, horizon)
+        self.alone()?.run_with(settings, horizon)
     }
 
     /// Runs the automaton by itself, from `state`, for `horizon` seconds.
@@ -99,9 +108,10 @@ impl<'a> Simulation<'a> {
         Ok(match executor.without_zeno_detection().run(self, observer) {
             Ok(Ending { at, reason }) => {
                 let reason = match reason.without_finish() {
-                    Reason::JumpLimit => {
-                        self.sliding(self.latest).map_or(Reason::JumpLimit, Reason::Sliding)
-                    }
+                    Reason::JumpLimit(_) => match self.sliding(self.latest) {
+                        Some(sliding) => Reason::Sliding(sliding),
+                        None => Reason::JumpLimit(self.last_jump()),
+                    },
                     Reason::Blocked if at == HybridTime::START => {
                         self.begins_outside().map_or(Reason::Blocked, Reason::Finished)
                     }
@@ -111,6 +121,11 @@ impl<'a> Simulation<'a> {
             }
             Err(halt) => Ending { at: self.hybrid_time(), reason: halt.into() },
         })
+    }
+
+    fn last_jump(&self) -> Option<LastJump> {
+        let [_, last] = self.groups[self.latest].latest;
+        last.map(|Move { component, target: location, .. }| LastJump { component, location })
     }
 
     /// The first component that is outside the invariant of its location, as the reason why nothing goes on.

@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::{Flowing, Jumping, RunObserver};
+use pleach_guards::{Expression, Program};
+
+use super::{Composition, Flowing, Jumping, RunObserver};
 
 /// The times 0, `period`, 2 `period`, … that have not come yet.
 struct Grid {
@@ -51,13 +53,14 @@ impl RunObserver for Samples {
     }
 }
 
-/// Writes a run as CSV: the time t, the number j of jumps, the components and the event of a jump, and all
-/// variables. There is a row for each time of a grid, and one for each side of a jump; the second of these
+/// Writes a run as CSV: the time t, the number j of jumps, the components and the event of a jump, all
+/// variables and all signals. There is a row for each time of a grid, and one for each side of a jump; the second of these
 /// has the event.
 pub struct CsvLog<W> {
     grid: Grid,
     writer: W,
-    has_begun: bool,
+    /// The signals, once there is a header.
+    signals: Option<Vec<Program>>,
     /// The first that failed.
     fault: Option<io::Error>,
 }
@@ -66,7 +69,7 @@ impl<W: Write> CsvLog<W> {
     /// With a row every `period` seconds, besides jumps; with an infinite period for jumps alone. Numbers
     /// are written one by one: hand in a buffered writer.
     pub fn every(period: f64, writer: W) -> Self {
-        CsvLog { grid: Grid::every(period), writer, has_begun: false, fault: None }
+        CsvLog { grid: Grid::every(period), writer, signals: None, fault: None }
     }
 
     /// The writer, when all is written.
@@ -81,27 +84,33 @@ impl<W: Write> CsvLog<W> {
         }
     }
 
-    fn begin(&mut self, variables: &[String]) -> io::Result<()> {
-        if std::mem::replace(&mut self.has_begun, true) {
+    fn begin(&mut self, composition: &Composition) -> io::Result<()> {
+        if self.signals.is_some() {
             return Ok(());
         }
+        let variables = composition.variables();
+        let compile = |(_, formula): (_, &Expression)| formula.compile(variables);
+        let signals = composition.signals().map(compile).collect::<Result<_, _>>();
+        self.signals = Some(signals.map_err(io::Error::other)?);
         write!(self.writer, "t,j,component,event")?;
-        for variable in variables {
-            write!(self.writer, ",{}", quoted(variable))?;
+        let signals = composition.signals().map(|(name, _)| name);
+        for name in variables.iter().map(String::as_str).chain(signals) {
+            write!(self.writer, ",{}", quoted(name))?;
         }
         writeln!(self.writer)
     }
 
     fn row(&mut self, t: f64, j: u32, what: [&str; 2], values: &[f64]) -> io::Result<()> {
         write!(self.writer, "{t},{j},{},{}", quoted(what[0]), quoted(what[1]))?;
-        for value in values {
+        let signals = self.signals.iter().flatten().map(|signal| signal.evaluate(values));
+        for value in values.iter().copied().chain(signals) {
             write!(self.writer, ",{value}")?;
         }
         writeln!(self.writer)
     }
 
     fn flow(&mut self, flow: &Flowing<'_>) -> io::Result<()> {
-        self.begin(flow.variables())?;
+        self.begin(flow.composition())?;
         while let Some(t) = self.grid.up_to(flow.until) {
             self.row(t, flow.from.j, [""; 2], &flow.values_at(t))?;
         }
@@ -109,7 +118,7 @@ impl<W: Write> CsvLog<W> {
     }
 
     fn jump(&mut self, jump: &Jumping<'_>) -> io::Result<()> {
-        self.begin(jump.variables())?;
+        self.begin(jump.composition())?;
         let components = jump.components().collect::<Vec<_>>().join(" ");
         self.row(jump.at.t, jump.at.j, [""; 2], jump.before)?;
         let after = jump.at.after_jump();

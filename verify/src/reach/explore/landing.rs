@@ -54,10 +54,8 @@ impl Search<'_> {
             let size = crossing.parts.len().div_ceil(self.settings.clusters);
             for parts in crossing.parts.chunks(size) {
                 let elapsed = parts.iter().map(|(time, _)| *time).reduce(Interval::hull);
-                let elapsed = elapsed.unwrap_or(Interval::WHOLE);
-                if elapsed.lower() > self.settings.horizon {
-                    continue;
-                }
+                let elapsed = elapsed.and_then(|elapsed| self.settings.in_time(elapsed));
+                let Some(elapsed) = elapsed else { continue };
                 let landed = parts.iter().filter_map(|(_, part)| self.landed(jump, part));
                 let landed = landed.reduce(|mut one, other| {
                     one.join(&other);
@@ -191,11 +189,9 @@ impl Search<'_> {
         exit: Exit,
     ) -> Vec<Entry> {
         let place = &self.model.locations()[location];
-        let elapsed = self.visits[number].elapsed + exit.until;
         let mut entries = Vec::new();
-        if elapsed.lower() > self.settings.horizon {
-            return entries;
-        }
+        let elapsed = self.visits[number].elapsed + exit.until;
+        let Some(elapsed) = self.settings.in_time(elapsed) else { return entries };
         let generators = self.settings.generators * self.model.variables().len();
         let mut arrived: Option<StateSet> = None;
         for (at, jump) in place.jumps.iter().enumerate() {
