@@ -78,8 +78,8 @@ pub struct Reading {
     pub clearance: Option<f64>,
     /// The largest share of the floor that may be lost, 0 to 1.
     pub accepted_loss: f64,
-    /// Groups of at most so many occupied cells become floor where floor is all around them; by default 2 in images, and
-    /// 0 in other maps.
+    /// The size, in cells, up to which a group of cells that are not free becomes floor if floor is all around it; by
+    /// default 2 in images, and 0 in other maps.
     pub specks: Option<usize>,
     /// How wide walls drawn as lines are; by default 0.1, and as drawn in SVG.
     pub wall_width: Option<f64>,

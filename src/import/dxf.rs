@@ -188,6 +188,17 @@ fn name(entity: &EntityType) -> String {
 mod tests {
     use super::*;
 
+    /// Two rooms with a door between them: the outer walls and those beside the door, all 0.1 wide.
+    #[test]
+    fn what_the_layers_of_walls_enclose_is_floor() {
+        let plan = read("tests/maps/office.dxf".as_ref(), &Reading::default()).unwrap();
+        let area = 11.9 * 7.9 - 0.1 * (2.95 + 2.95);
+        assert!((plan.account.stated - area).abs() < 1e-3, "{:?}", plan.account);
+        assert_eq!((plan.account.lost(), plan.workspace.boundary.len()), (0.0, 12));
+        let note = "lines with layer=FURNITURE: 1 left out (--wall layer=FURNITURE: walls)";
+        assert!(plan.notes.iter().any(|it| it == note), "{:?}", plan.notes);
+    }
+
     /// A bulge of 1 is a half circle, to the right of the way.
     #[test]
     fn bulges_are_arcs() {

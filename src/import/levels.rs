@@ -1,5 +1,6 @@
 //! Levels of a building: one of them is imported.
 
+use super::counted;
 use super::features::Feature;
 use std::collections::BTreeSet;
 
@@ -48,7 +49,8 @@ impl Levels {
         let note = match count - features.len() {
             0 => None,
             others => Some(format!(
-                "level {chosen} of {listed}: {others} features are on other levels only"
+                "level {chosen} of {listed}: {} on other levels only",
+                counted(others, "feature is", "features are")
             )),
         };
         Ok((features, note.into_iter().collect()))

@@ -1,10 +1,12 @@
 //! The page as a document: the parts that all pages share, put together into one file.
 
+use serde::Serialize;
 use serde_json::Value;
 
 use crate::colours;
 
-const FRAME: &str = include_str!("assets/page.html");
+const FRAME: &str = include_str!("assets/frame.html");
+const BODY: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
 /// In the order in which they use each other.
 const SCRIPTS: [&str; 11] = [
@@ -78,9 +80,6 @@ impl Document<'_> {
     /// The file.
     pub fn render(&self) -> String {
         let rows: Vec<String> = self.summary.iter().map(Row::render).collect();
-        // Whatever the data say, they cannot end the element that holds them.
-        let data = self.data.to_string().replace('<', "\\u003c");
-        let script = SCRIPTS.join("\n");
         let style = format!("{}\n{STYLE}", colours::style_sheet());
         let parts = [
             ("title", escaped(self.title)),
@@ -89,16 +88,33 @@ impl Document<'_> {
             ("headline", escaped(&self.outcome.headline)),
             ("outcome", escaped(&self.outcome.text)),
             ("summary", rows.concat()),
-            ("style", style),
-            ("script", script),
-            ("data", data),
         ];
-        filled(FRAME, &parts)
+        render(self.title, &style, &filled(BODY, &parts), &self.data, &SCRIPTS.join("\n"))
     }
 }
 
+/// A file that needs no other: a body, the data that its script reads from the element `data`, and the script.
+pub(crate) fn render(
+    title: &str,
+    style: &str,
+    body: &str,
+    data: &impl Serialize,
+    script: &str,
+) -> String {
+    // Writing numbers and texts as JSON does not fail. Whatever they say, they cannot end the element.
+    let data = serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c");
+    let parts = [
+        ("title", escaped(title)),
+        ("style", style.to_owned()),
+        ("body", body.to_owned()),
+        ("data", data),
+        ("script", script.to_owned()),
+    ];
+    filled(FRAME, &parts)
+}
+
 /// The text with `{{name}}` replaced by the part of this name, and parts left as they are.
-fn filled(frame: &str, parts: &[(&str, String)]) -> String {
+pub(crate) fn filled(frame: &str, parts: &[(&str, String)]) -> String {
     let mut pieces = frame.split("{{");
     let mut text = pieces.next().unwrap_or_default().to_owned();
     for piece in pieces {
@@ -111,6 +127,6 @@ fn filled(frame: &str, parts: &[(&str, String)]) -> String {
 }
 
 /// Text as HTML shows it.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -7,7 +7,8 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
-//! | `assets/page.html`, `assets/style.css` | the frame, light and dark, narrow and on paper |
+//! | `assets/frame.html` | what all pages begin and end with |
+//! | `assets/page.html`, `assets/style.css` | the body, light and dark, narrow and on paper |
 //! | `assets/tables.js` | reads the numbers |
 //! | `assets/player.js`, `assets/transport.js` | where the run stands; play, pause, speed, the time line, keys |
 //! | `assets/canvas.js` | drawing surfaces, axes, colours |
@@ -18,7 +19,7 @@
 
 #[cfg(feature = "network")]
 mod choices;
-mod document;
+pub(crate) mod document;
 #[cfg(feature = "network")]
 mod mission;
 #[cfg(feature = "network")]

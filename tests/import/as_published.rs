@@ -119,15 +119,6 @@ fn a_building_of_open_rmf_is_what_its_walls_enclose() {
     assert_eq!(error, r#"no point of the map is named "bay"; named are dock, lab"#);
 }
 
-#[cfg(feature = "dxf")]
-#[test]
-fn layers_of_a_drawing_are_walls() {
-    let plan = plan("office.dxf", &Reading::default());
-    assert!((floor(&plan) - (11.9 * 7.9 - 0.1 * 5.9)).abs() < 1e-3, "{}", floor(&plan));
-    let left_out = plan.notes.iter().find(|note| note.contains("FURNITURE")).unwrap();
-    assert_eq!(left_out, "lines with layer=FURNITURE: 1 left out (--wall layer=FURNITURE: walls)");
-}
-
 #[test]
 fn one_level_of_several_must_be_chosen() {
     let square = |x: u32| format!("[[[{x}, 0], [{}, 0], [{}, 9], [{x}, 9]]]", x + 9, x + 9);

@@ -4,6 +4,7 @@ use super::gaps::{self, Gap};
 use super::{Choices, Picture, Plan, Spot};
 use crate::automaton::network::scenario::ValidScenario;
 use crate::continuous::Point;
+use crate::page::document::{escaped, filled, render};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use image::{GrayImage, ImageFormat};
@@ -94,11 +95,8 @@ pub fn page(
         chosen: chosen(plan, choices),
         count: scenario.robot.len(),
     };
-    // Writing numbers and texts as JSON does not fail. What would end the element is escaped.
-    let data = serde_json::to_string(&data).unwrap_or_default().replace('<', "\\u003c");
-    let title = scenario.name.replace('&', "&amp;").replace('<', "&lt;");
-    let frame = include_str!("look.html").replace("{{title}}", &title);
-    frame.replace("{{script}}", include_str!("look.js")).replace("{{data}}", &data)
+    let body = filled(include_str!("look.html"), &[("title", escaped(&scenario.name))]);
+    render(&scenario.name, include_str!("look.css"), &body, &data, include_str!("look.js"))
 }
 
 fn shown(Picture { width, height, shades, placement }: &Picture) -> Option<Shown> {
