@@ -3,7 +3,7 @@
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it harnesses` writes the table in docs/proofs.md anew.
 
 #[path = "harnesses/catalogue.rs"]
-mod catalogue;
+pub mod catalogue;
 #[path = "harnesses/demands.rs"]
 mod demands;
 #[path = "harnesses/shapes.rs"]
