@@ -165,7 +165,8 @@ fn every_fault_applies() {
             .current_dir(root())
             .output()
             .unwrap();
-        assert!(git.status.success(), "{}", String::from_utf8_lossy(&git.stderr));
+        let error = String::from_utf8_lossy(&git.stderr);
+        assert!(git.status.success(), "{}: {error}", patch.display());
     }
 }
 
