@@ -216,4 +216,20 @@ mod tests {
         let lost = (double_area(&stairs.outline().unwrap()) - double_area(&smooth)) as f64 / 128.0;
         assert!((9.0..13.0).contains(&lost), "half a cell each step: {lost}");
     }
+
+    /// From a room to another along a bend one cell wide: without its outer corner it would be a third as wide.
+    #[test]
+    fn a_bend_stays_as_wide_as_robots_need() {
+        let bend = cells(&[
+            ".....######",
+            ".....######",
+            ".....######",
+            "####.......",
+            "#######....",
+            "#######....",
+        ]);
+        let corner = [4 * SIDE, 2 * SIDE];
+        assert!(bend.outline().unwrap()[0].contains(&corner));
+        assert!(smoothed(&bend, 0.4)[0].contains(&corner));
+    }
 }
