@@ -152,7 +152,7 @@ fn the_document_names_every_property_test_and_counts_the_cases() {
 #[test]
 fn every_fault_applies() {
     let packages = Packages::read();
-    for patch in files_below(&root().join("proofs/faults")) {
+    for patch in files_below(root().join("proofs/faults")) {
         let text = fs::read_to_string(&patch).unwrap();
         let head = |key: &str| text.lines().find_map(|line| line.strip_prefix(key));
         let (run, prints) = (head("Run: cargo test -p "), head("Prints: "));
