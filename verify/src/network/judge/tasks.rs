@@ -161,7 +161,8 @@ impl TaskClaims {
     /// that it has been serviced.
     fn needless(&self, end: &End, tasks: usize) -> Option<String> {
         let is_done = self.terms.done() == tasks && self.terms.pursued().is_none();
-        (self.all_run && end.outcome.is_given_up() && is_done && !end.is_of_given_up_tasks())
+        let gave_none_up = self.terms.given_up().is_empty();
+        (self.all_run && end.outcome.is_given_up() && is_done && gave_none_up)
             .then(|| format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
     }
 }
