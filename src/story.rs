@@ -183,8 +183,8 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
         }
         MissionEvent::ElectionRepeated { task } => (
             format!(
-                "no recruit is left in the leader's tree for task {task}: the election is repeated \
-                 among the other robots"
+                "no recruit can come for task {task}: the election is repeated among robots that may do \
+                 without"
             ),
             None,
         ),

@@ -55,7 +55,7 @@ pub enum Command {
     /// status 2). Tasks that no robot can service are named (exit status 3). Links at the start
     /// that cross walls, which the model of the radio ignores, are counted.
     Check(CheckArguments),
-    /// Make a scenario from a map: ROS map server, MovingAI, GeoJSON or SVG
+    /// Make a scenario from a map: images, ROS map server, MovingAI, GeoJSON, OpenStreetMap, Open-RMF, DXF or SVG
     ///
     /// Prints a scenario that is ready to run. Maps of cells are traced and simplified, and walls stay
     /// closed. What was simplified or left out, and passages too narrow for robots,

@@ -47,7 +47,7 @@ impl Automata {
     /// The automata.
     ///
     /// # Errors
-    /// Never with the tables and guards of this crate; they are checked all the same.
+    /// Never with the tables and guards of this crate; they are still checked.
     pub fn new() -> Result<Self, BuildError> {
         Ok(Automata {
             duty: duty_automaton()?,

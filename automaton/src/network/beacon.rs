@@ -88,8 +88,8 @@ pub struct Announcement {
     pub again: bool,
     /// Whether links had been stretched when the election was repeated among the robots of all access points.
     pub stretched: bool,
-    /// Where no recruit is left, robots bid that can take their posts along to the task. If there are none, robots are too
-    /// few, for this reason.
+    /// Set in the last announcement, when no recruit is left: robots bid whose posts can move with them. If none bids, the
+    /// task is given up for this reason.
     #[serde(with = "wire")]
     pub last_resort: Option<Arc<String>>,
 }

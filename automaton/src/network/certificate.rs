@@ -82,7 +82,7 @@ pub struct Attempt {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Then {
-    /// The election was repeated among robots of other trees.
+    /// The election was repeated among robots of other trees, or whose posts can move.
     ElectionRepeated,
     /// The team went on with longer links.
     LinksStretched,

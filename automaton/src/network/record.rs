@@ -231,7 +231,7 @@ pub enum MissionEvent {
     DutiesExchanged { mover: usize, parked: usize },
     /// p₁ attaches to another node of the tree (Remark 5.6).
     Reattached { robot: usize, parent: usize },
-    /// The leader's tree has no recruit left; the election is repeated among the others.
+    /// No recruit can come: the election is repeated among the robots of other trees, or among those whose posts can move.
     ElectionRepeated { task: usize },
     /// Robots are gone that take part in the elections for the task, or serviced it, or others have joined
     /// since and those before have given up: it is announced again to those that take part now.

@@ -9,6 +9,7 @@ use pleach_continuous::geometry::{
 };
 use pleach_continuous::network::reliability::ReliabilityError;
 use pleach_continuous::network::{LinkReliability, WithMargin};
+use pleach_discrete::network::IdSet;
 use pleach_discrete::network::NodeId;
 
 use super::Link;
@@ -344,6 +345,11 @@ impl Site {
     pub fn place_to_service(&self, task: Point, from: Point) -> Point {
         let reached = self.free_space.nearest_reached(task, from);
         reached.unwrap_or_else(|| self.free_space.nearest(task))
+    }
+
+    /// The numbers of all access points.
+    pub(super) fn all_access_points(&self) -> Arc<IdSet> {
+        Arc::new((0..self.access_points.len()).collect())
     }
 
     /// The length of the shortest way to the place from which a task is serviced, from the nearest of these places or of

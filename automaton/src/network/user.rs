@@ -131,7 +131,7 @@ fn row<A: DataOf<Asked>, B: DataOf<Asked>>(
 /// The automaton of a user.
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
     use RequestEvent as On;
     use UserAct::{Ask, CountPeriod, CountSilence, RestartClock};

@@ -54,14 +54,14 @@ pub mod mission {
     /// the last task has left without a branch have had time to become redundant: they can come then.
     pub fn bound() -> Guard {
         let free_to_call = !proposition("tree_settles") & !proposition("posted_near");
-        disengaged("bound", proposition("bound") & free_to_call & !proposition("post_leaves"))
+        disengaged("bound", proposition("bound") & free_to_call & !proposition("may_leave_post"))
     }
 
-    /// Nothing has depended on the post of the elected leader for as long as it takes to give such posts up, or it takes
-    /// the post along, and it cannot service its task from there.
+    /// Nothing has depended on the post of the elected leader for as long as it takes to give such posts up, or the post
+    /// moves with it; and it cannot service its task from there.
     pub fn unbound() -> Guard {
         let leads_on = !proposition("tree_settles") & !proposition("posted_near");
-        disengaged("unbound", proposition("bound") & proposition("post_leaves") & leads_on)
+        disengaged("unbound", proposition("bound") & proposition("may_leave_post") & leads_on)
     }
 
     /// A local stationary point (Sec. V-A2): the whole primary team has stood still for a while,

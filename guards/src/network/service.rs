@@ -52,7 +52,7 @@ fn is_abandoned() -> Predicate {
 }
 
 /// The robots that take part now are not those of the elections for its task, or may not be in a while; or it is given up
-/// for want of robots, and some are free that were not, or will be.
+/// for lack of robots, and some are free that were not, or will be.
 fn may_ask_others() -> Predicate {
     let may_be_freed = proposition("hears_want") & may_free_robots();
     proposition("misses_robot") | proposition("has_newcomers") | may_come() | may_be_freed
@@ -63,7 +63,7 @@ fn may_free_robots() -> Predicate {
     proposition("awaits_end") | proposition("has_freed")
 }
 
-/// It is given up for want of robots, and those that were not free are.
+/// It is given up for lack of robots, and those that were not free are.
 fn may_ask_freed() -> Predicate {
     let wants_robots = proposition("hears_failure") & proposition("hears_want");
     wants_robots & proposition("has_freed") & !proposition("awaits_retirements")
@@ -152,12 +152,12 @@ fn finds_no_bid() -> Predicate {
     lacks_bid() & !may_ask_others() & !may_find_ways()
 }
 
-/// Robots that could not bid for want of a way to an access point know one now, or may in a while.
+/// Robots that could not bid for lack of a way to an access point know one now, or may in a while.
 fn may_find_ways() -> Predicate {
     variable("waited").less_than(variable("longest_search")) | has_found_way()
 }
 
-/// A robot that could not bid for want of a way to an access point knows one now, and is asked again.
+/// A robot that could not bid for lack of a way to an access point knows one now, and is asked again.
 fn has_found_way() -> Predicate {
     proposition("has_found_way") & another_time()
 }
@@ -212,7 +212,7 @@ fn has_robots() -> Predicate {
 fn goes_unanswered() -> Predicate {
     let overdue = variable("waited").more_than(variable("longest_wait"));
     let all_heard = !proposition("expects_elector") & !proposition("misses_robot");
-    // Those who have given up for want of robots answer no more.
+    // Those who have given up for lack of robots answer no more.
     let have_given_up = proposition("wants_robots") & may_free_robots();
     !proposition("election_over") & overdue & all_heard & !have_given_up
 }

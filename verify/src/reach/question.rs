@@ -146,7 +146,7 @@ impl Proof {
             && matches!(self.enclosure.ending, Completion::Horizon | Completion::Everything)
     }
 
-    /// The proof; or a finer one that holds, where it does not. The states in which a guard may hold, which
+    /// This proof if it holds, else a finer one that does, if one is found before `prove` is stopped. The states in which a guard may hold, which
     /// jumps carry on as one set for each of the [clusters](Settings::clusters), are covered by twice
     /// and then ten times as many when `prove` is called again.
     ///
@@ -168,6 +168,9 @@ impl Proof {
             let finer = prove(&settings.finer(factor, segments))?;
             if finer.holds() {
                 return Ok(finer);
+            }
+            if finer.enclosure.ending == Completion::Stopped {
+                break;
             }
         }
         Ok(self)

@@ -357,7 +357,7 @@ fn row<A: DataOf<Standing>, B: DataOf<Standing> + Copy>(
 /// The automaton of a robot's attendance.
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
     use AttendanceEvent as On;
     let expect = "others expect to hear it";

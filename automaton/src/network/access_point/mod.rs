@@ -113,7 +113,7 @@ pub struct AccessPoint {
     closed_in: Option<u32>,
     /// The control period in which the task was announced last.
     announced_in: u32,
-    /// The control period in which it has heard that the task is given up for want of robots.
+    /// The control period in which it has heard that the task is given up for lack of robots.
     given_up_in: Option<u32>,
     /// What the user has asked for.
     requested: Option<Order>,

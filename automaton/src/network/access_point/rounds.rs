@@ -119,7 +119,7 @@ fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
 /// The automaton of an access point's control period.
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
     use RoundAct::{CallRoll, Deliberate, Forget, RestartClock, TellBeacon, TellUser};
     let wait = |point: &mut AccessPoint, duration: f64| point.clock += duration;

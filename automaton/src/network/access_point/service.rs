@@ -120,7 +120,7 @@ crate::observed! {
         knows_electors: point.announced().is_some(),
         /// The token of every robot that takes part is known.
         election_over: point.is_election_over(),
-        /// The election is that of a leader, and the robots do not end the mission themselves where none of them bids.
+        /// A leader is being elected, and the robots do not end the mission themselves where none of them bids.
         leader_wanted: matches!(point.notice(), Notice::Task(task) if task.last_resort.is_none()),
         /// A robot has bid in the election.
         has_bid: point.election.as_ref().is_some_and(|election| election.best().is_some()),
@@ -402,7 +402,7 @@ impl AccessPoint {
             position: requested.tasks.get(task)?.position,
             before: requested.positions(self.end_of_known_tasks().max(task)),
             roster: self.present_roster(),
-            eligible: Arc::new((0..self.site.access_points.len()).collect()),
+            eligible: self.site.all_access_points(),
             again: false,
             stretched: false,
             last_resort: None,
@@ -745,7 +745,7 @@ fn gives_up<A: DataOf<Serving> + KnowsTask>(guard: Guard) -> Row {
 /// The automaton of the service of the user's tasks.
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
     let notices = ["hears_election", "hears_progress", "hears_service", "hears_end"];
     Automaton::builder(SERVICE, Service::Gathering)

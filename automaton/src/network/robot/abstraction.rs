@@ -113,7 +113,7 @@ impl<'a> RobotView<'a> {
 
     /// The numbers of control periods without progress at which its guards change, ascending.
     pub fn still_thresholds(self) -> [u32; 3] {
-        [STATIONARY_WINDOW, super::partner::LAST_RESORT, self.robot().patience().ceil() as u32]
+        [STATIONARY_WINDOW, super::partner::WEDGED_AFTER, self.robot().patience().ceil() as u32]
     }
 }
 

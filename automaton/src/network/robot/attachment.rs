@@ -7,6 +7,7 @@
 //! otherwise they may be attached farther up the same way, or to the tree of another access point.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, Post, PostId};
@@ -286,21 +287,26 @@ impl Robot {
         })
     }
 
-    /// Whether its post services no task, and could be one from which that at `target` is serviced: what is attached to it
-    /// and a node that is not below it, which it could be attached to, would be near enough.
-    pub(super) fn could_move_post_to(&self, target: Point) -> bool {
+    /// Whether its post services no task and could move so that the one announced is serviced from it: its children and a
+    /// possible parent would stay in range.
+    pub(super) fn could_move_post_to(&self, task: Point) -> bool {
         let Some(post) = self.duty.post().filter(|post| post.task.is_none()) else { return false };
         let reach = self.site.settings.arrival_radius();
-        let short_of = target + (self.position - target).cap_magnitude(reach);
-        let place = if self.site.free_space.contains(short_of) { short_of } else { target };
+        let short_of = task + (self.position - task).cap_magnitude(reach);
+        let place = match self.site.free_space.contains(short_of) {
+            true => short_of,
+            false => self.site.place_to_service(task, self.position),
+        };
         let holds = |node: &Neighbour, limit: f64| self.site.walk(place, node.position()) <= limit;
         let may_bear = |node: &Neighbour| {
             let way = node.beacon.lineage.as_ref();
-            self.may_attach_to(node) && way.is_some_and(|way| !way.contains(post.id))
+            let leads_elsewhere = |way: &Arc<Lineage>| !way.contains(post.id) && self.confirms(way);
+            self.may_attach_to(node) && way.is_some_and(leads_elsewhere)
         };
         let mut nodes = self.neighbours.iter();
+        let mut bound = self.tree_children().filter(|child| !child.beacon.can_detach);
         nodes.any(|node| may_bear(node) && holds(node, self.build_length()))
-            && self.tree_children().all(|child| holds(child, self.hard_length()))
+            && bound.all(|child| holds(child, self.hard_length()))
     }
 
     fn choose_parent(&self) -> Option<Option<Anchor>> {

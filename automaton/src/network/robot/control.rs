@@ -184,7 +184,7 @@ fn row<A: DataOf<Control>, B: DataOf<Control>>(
 /// The automaton of the control period (Algorithm 5).
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
     use Act::*;
     use StageEvent as On;

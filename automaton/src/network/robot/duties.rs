@@ -583,7 +583,7 @@ fn labels(step: &'static str) -> [&'static str; 16] {
 /// The duty automaton (Algorithms 3 and 4, Remark 5.6).
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
     use DutyEvent as On;
     let automaton = Automaton::builder(DUTIES, Activity::Standby)

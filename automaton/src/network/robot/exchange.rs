@@ -293,7 +293,7 @@ fn partner_lost<A: DataOf<Exchange>>() -> Row {
 /// The automaton of the exchange of duties.
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
     use ExchangeEvent as On;
     Automaton::builder(EXCHANGE, ExchangeStage::Free)

@@ -123,8 +123,8 @@ facts! {
         finds_better_parent,
         /// It leads alone, and a fixed post has been attached to its own.
         burdened,
-        /// It is the elected leader with past duties, and nothing depends on its post any more, or it takes it along.
-        post_leaves,
+        /// It is the elected leader with past duties, and nothing depends on its post any more, or the post moves with it.
+        may_leave_post,
         /// The task that is serviced from its post is over.
         task_closed,
         /// Tasks are over: a mission that has been given up may go on with the robots that they had.
@@ -339,7 +339,7 @@ impl Robot {
         facts.may_set_out = self.may_set_out();
         facts.finds_better_parent = self.finds_better_parent();
         facts.burdened = self.is_burdened();
-        facts.post_leaves =
+        facts.may_leave_post =
             self.is_bound_to_unused_post() || self.duty.is_bound() && self.takes_post_along();
         facts.tasks_over = !self.closed.is_empty();
         facts.task_closed = self.services_closed_task();

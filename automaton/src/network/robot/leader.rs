@@ -70,7 +70,7 @@ pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects)
         if !conflict {
             effects.push(MissionEffect::Issue(Notice::Advance { joined: None }));
         }
-    } else if let Some(notice) = robot.end_without_bid() {
+    } else if let Some(notice) = robot.gives_up_without_bid() {
         effects.push(MissionEffect::Issue(notice));
     }
     Advance { path: None, in_vain: false }
@@ -123,8 +123,8 @@ impl Robot {
     }
 
     /// The nearer to the task along the geodesic, the better; ties go to the tree of the first access point. None if
-    /// the task is out of reach. Where robots that have stopped block the way, others come first. As a last resort,
-    /// none either if its post cannot come along.
+    /// the task is out of reach. Where robots that have stopped block the way, others come first. As a last resort
+    /// also none if its post cannot move.
     pub(super) fn leader_bid(&self, announcement: &Announcement, root: usize) -> Option<Bid> {
         let task = announcement.position;
         let target = self.site.place_to_service(task, self.position);
@@ -133,7 +133,7 @@ impl Robot {
         let distance = open_way.unwrap_or_else(|| self.site.distance(self.position, target));
         let unit = BID_RESOLUTION * self.site.usual.build;
         let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
-        let may_come = announcement.last_resort.is_none() || self.could_move_post_to(target);
+        let may_come = announcement.last_resort.is_none() || self.could_move_post_to(task);
         if !within_reach || !may_come {
             return None;
         }
@@ -159,7 +159,7 @@ impl Robot {
     }
 
     /// The notice that robots are too few, if it has announced the task as a last resort and no robot has bid.
-    fn end_without_bid(&self) -> Option<Notice> {
+    fn gives_up_without_bid(&self) -> Option<Notice> {
         let (id, announcement) = self.announced.as_ref()?;
         let is_without_bid = id.issuer == self.id && self.winner().is_none();
         let reason = announcement.last_resort.clone().filter(|_| is_without_bid)?;

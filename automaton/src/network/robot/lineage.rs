@@ -126,7 +126,7 @@ fn detach(_: &Attached, _: &Robot, (): &mut ()) -> Detached {
 /// The automaton of a robot's place in the tree.
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn attachment_automaton() -> Result<AttachmentAutomaton, BuildError> {
     use AttachmentEvent as On;
     let name = "way of the parent, own post first";

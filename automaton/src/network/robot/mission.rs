@@ -225,7 +225,7 @@ fn resumed<A: DataOf<Mission>>() -> Row {
 /// The mission automaton (Algorithms 1 to 5).
 ///
 /// # Errors
-/// Never with the table and guards of this crate; they are checked all the same.
+/// Never with the table and guards of this crate; they are still checked.
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     // A notice has one content; an election has a winner or not; at most one subgroup is moving.

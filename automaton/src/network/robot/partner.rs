@@ -35,7 +35,7 @@ const GAIN: f64 = 0.05;
 const PATIENCE: u32 = 2;
 /// Control periods without progress after which it takes a partner that is not nearer: one that
 /// leaves no room to pass, at a corner say.
-pub(super) const LAST_RESORT: u32 = 10;
+pub(super) const WEDGED_AFTER: u32 = 10;
 /// Then it takes one up to this many ρ away, too: the two may stand still without touching each other, in the bend of
 /// a corridor or beside a third robot, and none passes between them.
 const WEDGE: f64 = 4.0;
@@ -84,7 +84,7 @@ impl Robot {
             return;
         }
         let Some(goal) = self.goal() else { return };
-        let (contact, gain) = match self.still_periods < LAST_RESORT {
+        let (contact, gain) = match self.still_periods < WEDGED_AFTER {
             true => (CONTACT, GAIN),
             false => (WEDGE, -CONCESSION),
         };

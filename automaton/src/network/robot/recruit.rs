@@ -165,7 +165,7 @@ impl Robot {
         &self,
         standstill: Option<Standstill>,
     ) -> Option<Announcement> {
-        let known = self.announcement()?;
+        let known = self.announcement().filter(|known| known.last_resort.is_none())?;
         let own_root = self.lineage().map(|lineage| lineage.root());
         // Its team may be in another tree by now.
         let have_been_asked = [own_root, self.led_from];
@@ -179,21 +179,25 @@ impl Robot {
         let is_near_other_tree = standstill.is_some_and(|team| team.near_other_tree);
         let aids_other_tree = is_near_other_tree && (!known.again || since_stretched);
         (aids_other_tree || is_any_disconnected && since_stretched).then(|| Announcement {
-            eligible: Arc::new((0..self.site.access_points.len()).collect()),
+            eligible: self.site.all_access_points(),
             again: known.again || aids_other_tree,
             stretched: known.stretched || self.stretched,
             ..known.clone()
         })
     }
 
-    /// Its task as it is announced before it is given up with this notice for lack of robots, once: to those that could
-    /// take their posts along.
+    /// The last announcement of its task before it is given up for lack of robots with this notice. Only robots whose
+    /// posts can move with them bid.
     fn last_resort(&self, end: &Notice) -> Option<Announcement> {
         let known = self.announcement().filter(|known| known.last_resort.is_none())?;
         let Notice::Ended { outcome: Outcome::InsufficientRobots, reason, .. } = end else {
             return None;
         };
-        Some(Announcement { last_resort: Some(Arc::clone(reason)), ..known.clone() })
+        Some(Announcement {
+            eligible: self.site.all_access_points(),
+            last_resort: Some(Arc::clone(reason)),
+            ..known.clone()
+        })
     }
 
     fn standstill(&self) -> Option<Standstill> {

@@ -100,10 +100,8 @@ impl Conclusions {
                 self.exchanging.extend([(mover, step), (parked, step)]);
             }
             // A path that was seen before may be given up untold.
-            MissionEvent::TaskWithdrawn { .. } | MissionEvent::ElectionRepeated { .. } => {
-                self.forget_early();
-            }
-            MissionEvent::TaskGivenUp { .. } => {
+            MissionEvent::ElectionRepeated { .. } => self.forget_early(),
+            MissionEvent::TaskWithdrawn { .. } | MissionEvent::TaskGivenUp { .. } => {
                 self.forget_early();
                 self.resume(step);
             }

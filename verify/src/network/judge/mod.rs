@@ -340,7 +340,7 @@ impl<'a> Judge<'a> {
         match self.tried.overlooked(&self.ledger, previous) {
             None => Ok(()),
             Some(overlooked) => {
-                let sentence = format!("links are stretched for want of a robot, but {overlooked}");
+                let sentence = format!("links are stretched for lack of a robot, but {overlooked}");
                 Err(Dispute::of(Property::Events, &[*robot], sentence))
             }
         }
@@ -517,7 +517,7 @@ impl<'a> Judge<'a> {
         self.undecided.as_ref().filter(is_late).or(Some(last))
     }
 
-    /// Whether the election was repeated among robots of other trees, and has no leader.
+    /// Whether the election was repeated, and has no leader.
     fn nobody_leads(&self) -> bool {
         let last = self.tried.trials().last().map(|trial| trial.then);
         self.ledger.stage() == Stage::Electing && last == Some(Then::ElectionRepeated)
@@ -536,7 +536,7 @@ impl<'a> Judge<'a> {
         let overlooked = self.tried.overlooked(&self.ledger, self.instant_of_last_call()?)?;
         match verdicts::missing(&self.scenario, &self.tasks_together()) {
             Some(_) => None,
-            None => Some(format!("the mission ends for want of a robot, but {overlooked}")),
+            None => Some(format!("the mission ends for lack of a robot, but {overlooked}")),
         }
     }
 

@@ -196,7 +196,7 @@ impl Terms {
 
     /// The tasks that are serviced.
     pub(super) fn serviced(&self) -> impl Iterator<Item = usize> {
-        self.serviced.keys().copied()
+        self.serviced.keys().copied().filter(|&task| !self.is_closed(task))
     }
 
     /// The tasks that no robot could service, ascending.

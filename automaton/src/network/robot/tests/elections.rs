@@ -511,7 +511,7 @@ fn a_leader_that_takes_its_post_along_is_not_bound_by_what_depends_on_it() {
     let Duty::Relay(Relay(held)) = *robot.duty else { panic!("it holds a fixed post") };
     robot.duty = Current::new(Duty::Bound(Bound(held)));
     robot.measures();
-    assert!(robot.facts.post_leaves);
+    assert!(robot.facts.may_leave_post);
     robot.holds(primary(30, None, 13));
     robot.measures();
     assert!(!robot.facts.burdened);
