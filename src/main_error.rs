@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 /// Any error, for `fn main() -> Result<(), MainError>`: the message of the error and of its causes is
-/// printed, where other errors show how they are built.
+/// printed, instead of its debug form.
 ///
 /// ```
 /// use pleach::prelude::*;

@@ -325,7 +325,7 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
 
     /// In all formulas of the model `name` stands for `formula`, of coordinates, parameters and other
     /// signals: an output, or what several guards and flows read. Runs record it, and
-    /// [compositions](crate::CompositionBuilder::connect) connect it, like a coordinate.
+    /// [compositions](crate::CompositionBuilder::connect) can connect it, like a coordinate.
     pub fn signal(mut self, name: &str, formula: impl Into<Expression>) -> Self {
         self.parts.signals.push((name.to_owned(), formula.into()));
         self.substitute = Reset::substitute;

@@ -129,7 +129,7 @@ pub enum FileError {
     Inconsistent(&'static str),
 }
 
-/// Why nothing has a value.
+/// Why there is no value.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NoValue {
@@ -138,7 +138,7 @@ pub enum NoValue {
     Unknown {
         /// The name.
         name: String,
-        /// Those that there are.
+        /// The names that exist.
         known: Vec<String>,
     },
     /// The instant is not within the run.

@@ -212,7 +212,7 @@ pub struct ImportArguments {
     #[arg(long, value_name = "LENGTH", visible_alias = "clearance")]
     pub robot_radius: Option<f64>,
     /// Accept that so much of the floor is lost, in percent
-    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * ACCEPTED_LOSS)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * ACCEPTED_LOSS, value_parser = percent)]
     pub accept_loss: f64,
     /// How far walls may come out of place into the floor [default: one cell, but at most 1 % of the floor is lost by
     /// it; a thousandth of the extent for curves]
@@ -282,6 +282,12 @@ fn spot(text: &str) -> Result<Spot, String> {
         }
         _ => Ok(Spot::Named(text.into())),
     }
+}
+
+/// A share in percent.
+fn percent(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=100.0).contains(share));
+    share.ok_or_else(|| format!("{text} is no share in percent, from 0 to 100"))
 }
 
 /// A property with its value, written `KEY=VALUE`.

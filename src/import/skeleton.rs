@@ -97,11 +97,11 @@ pub enum SkeletonError {
         length: f64,
     },
     /// No point of the map has this name.
-    #[error("no point of the map is named {name:?}; named are {known}")]
+    #[error("no point of the map is named {name:?}: {known}")]
     NoSuchPoint {
         /// The name.
         name: String,
-        /// The names that there are.
+        /// The names that exist, in a clause.
         known: String,
     },
     /// The clearance that was not chosen is too large for the floor.

@@ -28,7 +28,11 @@ impl Chosen {
             (None, Spot::At(place)) => Ok(*place),
             (None, Spot::Named(name)) => {
                 let known: Vec<&str> = named.iter().map(|(name, _)| name.as_str()).collect();
-                Err(SkeletonError::NoSuchPoint { name: name.clone(), known: known.join(", ") })
+                let known = match known[..] {
+                    [] => "no point of the map has a name; places are stated as X,Y".to_owned(),
+                    _ => format!("named are {}", known.join(", ")),
+                };
+                Err(SkeletonError::NoSuchPoint { name: name.clone(), known })
             }
         };
         let chosen = |spots: &[Spot], stated: &[[f64; 2]]| match spots {

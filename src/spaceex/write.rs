@@ -20,7 +20,7 @@ pub struct Written {
 
 /// The automaton and its question in the files of SpaceEx, as one base component called `system`.
 ///
-/// Inputs become numbers that invariants bound, and signals numbers that they say. A transition that has to be taken gets
+/// Inputs become numbers that invariants bound, and signals numbers that invariants define. A transition that has to be taken gets
 /// `asap="true"`. `shown` are the variables to be shown.
 ///
 /// # Errors

@@ -116,7 +116,7 @@ fn a_building_of_open_rmf_is_what_its_walls_enclose() {
     assert_eq!(scenario.task[0].position, [15.0, -9.0]);
     let choices = Choices { tasks: vec![spot("bay")], ..choices };
     let error = import::skeleton(&plan, &choices).unwrap_err().to_string();
-    assert_eq!(error, r#"no point of the map is named "bay"; named are dock, lab"#);
+    assert_eq!(error, r#"no point of the map is named "bay": named are dock, lab"#);
 }
 
 #[test]

@@ -68,7 +68,7 @@ impl Parts {
         self.flows.iter().map(|(location, _)| *location)
     }
 
-    /// What is given for rows.
+    /// Guard, assignments and reset of each row.
     pub(super) fn given_mut(&mut self) -> impl Iterator<Item = &mut Given> {
         let conditions = self.conditions.iter_mut().map(|(_, given)| given);
         let edges = self.edges.iter_mut().map(|(_, given)| given);

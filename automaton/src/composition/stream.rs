@@ -96,7 +96,7 @@ pub struct Finish {
 }
 
 impl Flowing<'_> {
-    /// What runs.
+    /// The composition that runs.
     pub fn composition(&self) -> &Composition {
         self.simulation.composition()
     }
@@ -118,7 +118,7 @@ impl Jumping<'_> {
         self.composition.names_of(self.moves)
     }
 
-    /// What runs.
+    /// The composition that runs.
     pub fn composition(&self) -> &Composition {
         self.composition
     }

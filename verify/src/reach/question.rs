@@ -78,7 +78,7 @@ pub enum ReachError {
     Location {
         /// The name.
         location: String,
-        /// Those that there are.
+        /// The names that exist.
         known: String,
     },
     /// A formula has windows without an end.

@@ -52,7 +52,7 @@ pub(super) fn sum_of_products(pairs: impl Iterator<Item = (Interval, Interval)>)
         count += 1;
     }
     match last {
-        // Often exact: what rests is to stay as it is, however often that is computed.
+        // A single product is often exact, so constant values do not widen.
         Some((a, b)) if count == 1 => a * b,
         _ => enclosed_sum(lower, upper, size, count),
     }

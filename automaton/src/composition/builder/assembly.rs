@@ -177,7 +177,7 @@ impl CompositionBuilder {
         self.check_names()
     }
 
-    /// An input of formulas has one source, is read by nobody, and is changed by nothing.
+    /// An input of formulas has one source, is not read by another input and not changed.
     fn check_wires(&self, wires: &[(String, String)]) -> Result<(), CompositionError> {
         for (output, input) in wires {
             let owner = self.parts.iter().find_map(|part| Some((part, part.own_name(input)?)));
