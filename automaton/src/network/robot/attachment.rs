@@ -7,7 +7,6 @@
 //! otherwise they may be attached farther up the same way, or to the tree of another access point.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, Post, PostId};
@@ -202,6 +201,9 @@ impl Robot {
     /// fewest links to an access point that is near enough; one that is confirmed already, if there is one.
     fn replace_parent(&self) -> Option<Option<Anchor>> {
         let (post, lost) = (self.duty.post()?.id, self.anchor());
+        if let Some(followed) = self.new_post_of_parent() {
+            return Some(Some(followed));
+        }
         if lost.is_some() && self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
             return None;
         }
@@ -225,6 +227,15 @@ impl Robot {
         ways.min_by_key(|&(order, _)| order).map(|(_, anchor)| Some(anchor))
     }
 
+    /// Where the robot that its fixed post is attached to has joined the team from its own post, and the one that has taken that
+    /// over is out of reach: the new post of the first. The task was serviced before p₁ was attached to it.
+    fn new_post_of_parent(&self) -> Option<Anchor> {
+        let own = self.duty.post().filter(|post| post.is_fixed())?.id;
+        let parent = self.tree_parent().filter(|_| self.is_orphan())?;
+        let node = self.neighbour(parent).filter(|node| self.may_bear(own, node))?;
+        self.anchor_of(node)
+    }
+
     /// With the eager strategy, while no path Σ is sought: the node farthest up the way from a fixed post to its access
     /// point that a link of length d_build reaches, past relays alone. These become redundant then, Remark 5.6 (ii).
     /// Where a mission has been given up, the tree stays as it was.
@@ -233,19 +244,11 @@ impl Robot {
             return None;
         }
         let (own, way) = (self.duty.post()?.id, self.lineage()?);
-        let leads_up = |node: &Neighbour| {
-            let way = node.beacon.lineage.as_ref();
-            way.is_some_and(|way| !way.contains(own) && self.confirms(way))
-        };
         let posts = way.posts().iter().skip(1).map(|&post| Anchor::Post(post));
         let mut farthest = None;
         for anchor in posts.chain([Anchor::Access(way.root())]) {
             let Some(node) = self.neighbour_at(anchor) else { break };
-            if Some(anchor) != self.anchor()
-                && self.may_attach_to(node)
-                && leads_up(node)
-                && self.may_link(node)
-            {
+            if Some(anchor) != self.anchor() && self.may_bear(own, node) && self.may_link(node) {
                 farthest = Some(anchor);
             }
             if !node.is_relay() {
@@ -278,9 +281,7 @@ impl Robot {
         self.neighbours.iter().filter_map(move |node| {
             let ((post, way), other) = (own?, node.beacon.lineage.as_ref()?);
             let may_attach = other.root() != way.root()
-                && !other.contains(post)
-                && self.confirms(other)
-                && self.may_attach_to(node)
+                && self.may_bear(post, node)
                 && node.post().is_none_or(Post::is_fixed)
                 && self.may_link(node);
             self.anchor_of(node).filter(|_| may_attach).map(|anchor| (other.hops(), anchor))
@@ -298,14 +299,9 @@ impl Robot {
             false => self.site.place_to_service(task, self.position),
         };
         let holds = |node: &Neighbour, limit: f64| self.site.walk(place, node.position()) <= limit;
-        let may_bear = |node: &Neighbour| {
-            let way = node.beacon.lineage.as_ref();
-            let leads_elsewhere = |way: &Arc<Lineage>| !way.contains(post.id) && self.confirms(way);
-            self.may_attach_to(node) && way.is_some_and(leads_elsewhere)
-        };
         let mut nodes = self.neighbours.iter();
         let mut bound = self.tree_children().filter(|child| !child.beacon.can_detach);
-        nodes.any(|node| may_bear(node) && holds(node, self.build_length()))
+        nodes.any(|node| self.may_bear(post.id, node) && holds(node, self.build_length()))
             && bound.all(|child| holds(child, self.hard_length()))
     }
 
@@ -397,6 +393,13 @@ impl Robot {
     /// Whether this robot may attach to this neighbour: not to one that is attached to it.
     fn may_attach_to(&self, neighbour: &Neighbour) -> bool {
         Self::accepts_redundant(neighbour) && neighbour.beacon.parent != Some(self.id)
+    }
+
+    /// Whether this post may be attached to a neighbour: the way of that is confirmed, and does not lead over the post.
+    fn may_bear(&self, post: PostId, neighbour: &Neighbour) -> bool {
+        let way = neighbour.beacon.lineage.as_ref();
+        self.may_attach_to(neighbour)
+            && way.is_some_and(|way| !way.contains(post) && self.confirms(way))
     }
 
     fn accepts_redundant(neighbour: &Neighbour) -> bool {

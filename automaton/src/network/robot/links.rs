@@ -108,38 +108,64 @@ impl Robot {
         self.hard_length() + 2.0 * self.stray()
     }
 
+    /// Up to which length a link of the tree may have got when both of its ends have settled at posts d_hard apart.
+    pub(super) fn settled_length(&self) -> f64 {
+        (self.hard_length() + 2.0 * self.settling_radius()) * (1.0 + ROUNDING)
+    }
+
     /// Whether a link of the tree from here to the holder of this parent would not be too long.
     pub(super) fn reaches_parent(&self, parent: Option<Anchor>) -> bool {
         let node = parent.and_then(|anchor| self.neighbour_at(anchor));
         node.is_some_and(|node| self.walk_to(node) <= self.hard_length())
     }
 
-    /// Whether the robot could take this post on Σ where it is: the links to the parent of the post and to its children
-    /// are not too long. A robot on its way along Σ counts as the holder of the post that it goes to.
+    /// Whether the robot could take this post on Σ where it is: it is linked to the parent of the post, and no link to that
+    /// or to a child of the post is too long.
     pub(super) fn links_hold_at(&self, post: Post) -> bool {
-        let coming = |node: &Neighbour| match node.beacon.duty {
+        let limit = self.hard_length();
+        let has_parent = match post.parent {
+            Some(Anchor::Access(access)) => self.distance_to_access(access, self.position) <= limit,
+            Some(Anchor::Post(_)) => {
+                self.neighbours.iter().any(|node| self.is_coming_to(node, post.parent))
+            }
+            None => true,
+        };
+        has_parent
+            && self.robots_linked_at(post).all(|node| self.walk_to(node) <= limit)
+            && self.reaches_branches_out_of_range(post.id)
+    }
+
+    /// Whether the robot has settled at this post on Σ, as near to its links as robots come. The primary team is attached to
+    /// the robot that is relieved, which joins it.
+    pub(super) fn has_settled_at(&self, post: Post, reference: Point) -> bool {
+        let stays = |node: &&Neighbour| node.post().is_none_or(|held| !held.is_primary());
+        let limit = self.settled_length();
+        !self.is_off(reference)
+            && self.robots_linked_at(post).filter(stays).all(|node| self.walk_to(node) <= limit)
+    }
+
+    /// The robots that it hears with the posts that this one is attached to and that are attached to it.
+    fn robots_linked_at(&self, post: Post) -> impl Iterator<Item = &Neighbour> {
+        self.neighbours.iter().filter(move |node| {
+            self.is_coming_to(node, post.parent)
+                || self.post_ahead_of(node).is_some_and(|held| held.is_child_of(post.id))
+        })
+    }
+
+    /// Whether a robot holds this anchor, or goes to it along Σ.
+    fn is_coming_to(&self, node: &Neighbour, anchor: Option<Anchor>) -> bool {
+        self.post_ahead_of(node).is_some_and(|held| anchor == Some(Anchor::Post(held.id)))
+    }
+
+    /// The post of a robot: on Σ, the post that it goes to.
+    fn post_ahead_of(&self, node: &Neighbour) -> Option<Post> {
+        match node.beacon.duty {
             Some(Duty::Shifting(Shifting { place, .. })) => {
                 let hop = self.mission.path().and_then(|path| path.hops.get(place + 1));
                 hop.map(|hop| hop.post)
             }
             _ => node.post().copied(),
-        };
-        let is_near = |node: &Neighbour| self.walk_to(node) <= self.hard_length();
-        let holds = |node: &Neighbour, id: PostId| coming(node).is_some_and(|held| held.id == id);
-        let is_child =
-            |node: &&Neighbour| coming(node).is_some_and(|held| held.is_child_of(post.id));
-        let reaches_parent = match post.parent {
-            Some(Anchor::Access(access)) => {
-                self.distance_to_access(access, self.position) <= self.hard_length()
-            }
-            Some(Anchor::Post(id)) => {
-                self.neighbours.iter().any(|node| holds(node, id) && is_near(node))
-            }
-            None => true,
-        };
-        reaches_parent
-            && self.neighbours.iter().filter(is_child).all(is_near)
-            && self.reaches_branches_out_of_range(post.id)
+        }
     }
 
     /// Whether the robot is near enough to those that are attached to the holder of this post and that it does not hear
@@ -168,8 +194,7 @@ impl Robot {
     /// linked to, and that it hears from farther away than links are long, may be out of range again in the next moment:
     /// others have stopped or begun again meanwhile, and the robots between the two are gone.
     fn may_be_linked_to(&self, holder: &Neighbour) -> bool {
-        self.parent == Some(holder.id())
-            || self.walk_to(holder) <= self.longest_length() * (1.0 + ROUNDING)
+        self.parent == Some(holder.id()) || self.walk_to(holder) <= self.settled_length()
     }
 
     /// The parent of the robot that has left `place`.

@@ -71,7 +71,12 @@ impl Robot {
 
     /// Whether a robot here has not settled there.
     pub(super) fn is_apart(&self, here: Point, there: Point) -> bool {
-        (there - here).norm() > SETTLED * self.clearance() + self.stray()
+        (there - here).norm() > self.settling_radius()
+    }
+
+    /// How far from the reference of its post a robot may settle.
+    pub(super) fn settling_radius(&self) -> f64 {
+        SETTLED * self.clearance() + self.stray()
     }
 
     /// Whether the robot may move in this period.
@@ -93,7 +98,8 @@ impl Robot {
             near(self.position, task)
                 && way.is_some_and(|way| way.waypoints.iter().all(|&corner| near(corner, task)))
         });
-        services && (self.links_hold_at(hop.post) || !self.is_off(hop.place.reference))
+        services
+            && (self.links_hold_at(hop.post) || self.has_settled_at(hop.post, hop.place.reference))
     }
 
     /// Whether the robot stands right behind the next member of its subgroup, which has arrived:

@@ -81,18 +81,18 @@ fn links_are_measured_along_geodesics() {
 }
 
 #[test]
-fn a_parent_is_kept_up_to_d_hard_and_while_no_other_has_fewer_links() {
-    let hard = robot().hard_length();
+fn a_parent_is_kept_within_reach_and_while_no_other_has_fewer_links() {
+    let settled = robot().settled_length();
     let rival = |posts: &[u32]| beacon(2, west(0.5), fixed(12, 13), posts);
     let keeps = |length: f64, posts: &[u32]| {
         let mut robot = robot();
         robot.holds(redundant(0, 11));
         choice(&mut robot, [beacon(1, east(length), fixed(11, 13), &[11, 13]), rival(posts)])
     };
-    assert_eq!(keeps(hard - LITTLE, &[12, 13]), at(11), "no fewer links");
-    assert_eq!(keeps(hard - LITTLE, &[12]), at(12), "fewer links");
-    assert_eq!(keeps(hard + LITTLE, &[12, 13]), at(12), "too long");
-    assert_eq!(keeps(hard - LITTLE, &[12, 14, 13]), at(11), "more links");
+    assert_eq!(keeps(settled - LITTLE, &[12, 13]), at(11), "no fewer links");
+    assert_eq!(keeps(settled - LITTLE, &[12]), at(12), "fewer links");
+    assert_eq!(keeps(settled + LITTLE, &[12, 13]), at(12), "too long");
+    assert_eq!(keeps(settled - LITTLE, &[12, 14, 13]), at(11), "more links");
 }
 
 /// A robot that has come to its place of Σ hears of its way a few rounds later.
@@ -267,7 +267,7 @@ fn nobody_stands_for_a_post_that_has_not_been_left() {
 /// Robots between the two have stopped. The holder comes into range by chance, and may leave it again.
 #[test]
 fn the_holder_of_the_post_above_is_no_parent_where_no_link_reaches() {
-    let hard = robot().hard_length();
+    let settled = robot().settled_length();
     let parent = |away: f64, before: Option<NodeId>| {
         let mut robot = robot();
         robot.holds(fixed(20, 13));
@@ -275,9 +275,28 @@ fn the_holder_of_the_post_above_is_no_parent_where_no_link_reaches() {
         robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
         robot.tree_parent()
     };
-    assert_eq!(parent(hard - LITTLE, None), Some(5));
-    assert_eq!(parent(hard + LITTLE, None), None);
-    assert_eq!(parent(hard + LITTLE, Some(5)), Some(5), "there was a link before");
+    assert_eq!(parent(settled - LITTLE, None), Some(5));
+    assert_eq!(parent(settled + LITTLE, None), None);
+    assert_eq!(parent(settled + LITTLE, Some(5)), Some(5), "there was a link before");
+}
+
+/// The robot that a leaf is linked to has joined the team from post 13, and robot 6 that relieves it is out of reach.
+#[test]
+fn a_post_follows_the_robot_that_it_is_linked_to_where_its_successor_is_out_of_reach() {
+    let settled = robot().settled_length();
+    let desired = |successor: f64, linked: &[u32]| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        robot.parent = Some(5);
+        robot.hears(beacon(5, west(settled - 0.1), fixed(21, 13), linked));
+        robot.hears(beacon(6, west(successor), fixed(13, 14), &[13, 14]));
+        robot.keep_place().expect("it goes on");
+        robot.desired_parent
+    };
+    assert_eq!(desired(settled + LITTLE, &[21, 13, 14]), Some(at(21)));
+    assert_eq!(desired(settled - LITTLE, &[21, 13, 14]), None, "the successor is its parent");
+    assert_eq!(desired(settled + LITTLE, &[]), None, "it knows no way");
+    assert_eq!(desired(settled + LITTLE, &[21, 20, 14]), None, "that is attached to it");
 }
 
 /// Robot 0 holds a fixed post whose parent, post 21, has had no holder for `periods` control periods.

@@ -93,7 +93,7 @@ fn errors_make_clearances_larger_and_settled_places_wider() {
     assert!(!robot.is_off(east(settled - LITTLE)) && robot.is_off(east(settled + LITTLE)));
 }
 
-/// A link that may be as long as it is, with errors, is kept: a parent may measure itself 2 (2e + m) farther.
+/// With errors, robots that have settled at posts d_hard apart may measure themselves 2 (2e + m) farther apart, and a little.
 #[test]
 fn a_parent_is_kept_as_far_off_as_both_may_stray() {
     let keeps = |length: f64| {
@@ -104,7 +104,7 @@ fn a_parent_is_kept_as_far_off_as_both_may_stray() {
         robot.desired_parent == Some(Some(Anchor::Post(PostId(11))))
     };
     let robot = unsure();
-    let limit = robot.hard_length() + 2.0 * robot.stray();
+    let limit = robot.hard_length() + 2.0 * (robot.stray() + 0.02 * robot.clearance());
     assert!(keeps(limit - LITTLE) && !keeps(limit + LITTLE));
 }
 
@@ -318,6 +318,22 @@ fn a_robot_under_way_is_attached_to_the_next_of_the_chain() {
     robot.position = east(1.0);
     robot.report_arrival();
     assert!(robot.has_reported(0));
+}
+
+/// At the post itself it arrives where its links are as long as two settled robots make them; the primary team is attached
+/// to the robot that it relieves.
+#[test]
+fn a_robot_that_has_settled_arrives_unless_a_link_is_too_long() {
+    let settled = robot().settled_length();
+    let arrives = |length: f64, other: Post| {
+        let mut robot = shifting(0.5, true);
+        robot.position = east(1.0);
+        robot.hears(beacon(4, east(1.0 + length), other, &[other.id.0, 15]));
+        robot.has_arrived()
+    };
+    assert!(arrives(settled - LITTLE, fixed(13, 14)) && !arrives(settled + LITTLE, fixed(13, 14)));
+    assert!(arrives(settled - LITTLE, fixed(20, 1)) && !arrives(settled + LITTLE, fixed(20, 1)));
+    assert!(arrives(settled + LITTLE, primary(20, None, 1)));
 }
 
 /// The robot at the end of the subgroup holds the post that the one before it comes to take.
