@@ -207,6 +207,11 @@ impl Site {
         if stretched { self.stretched } else { self.usual }
     }
 
+    /// The same site, where robots derive everything anew.
+    pub(super) fn without_caching(&self) -> Self {
+        Site { settings: Settings { caching: false, ..self.settings }, ..self.clone() }
+    }
+
     /// The same site where the robots start at other places. Links are as long as before.
     pub(super) fn with_starts(&self, starts: Vec<Point>) -> Self {
         Site { west_to_east: from_west_to_east(&starts), starts, ..self.clone() }

@@ -499,6 +499,7 @@ impl Robot {
     /// in it has changed.
     fn next_beacon(&mut self) -> Arc<Beacon> {
         if !std::mem::take(&mut self.has_unsent_news)
+            && self.caches()
             && let Some(beacon) = self.last_beacon.get()
         {
             let is_right = |robot: &Self| *beacon == robot.public_state();
@@ -594,7 +595,7 @@ impl Robot {
 
     /// Processes what it has received if that contains news, or if it is due anyway.
     fn process_news(&mut self, is_due: bool) -> Result<(), TransitionError> {
-        if !std::mem::take(&mut self.has_news) && !is_due {
+        if !std::mem::take(&mut self.has_news) && !is_due && self.caches() {
             #[cfg(feature = "abstraction")]
             debug_assert_eq!(
                 self.is_looked_at().then(|| self.overlooked()).flatten(),

@@ -115,7 +115,7 @@ impl Robot {
     /// A control period's routes begin: with the links over which the robot may send from here, and with what the routing
     /// method made of them in the period before. Links that have been found stand until something changes.
     pub(super) fn survey_links(&mut self) {
-        if self.links_stand {
+        if self.links_stand && self.caches() {
             debug_assert!(self.may_skip(Self::are_links_found), "robot {}: old links", self.id);
             self.links.iter_mut().for_each(RouteLink::begin_period);
         } else {
@@ -240,7 +240,9 @@ impl Robot {
     pub(super) fn primal_step(&mut self) {
         let has_new_multipliers = std::mem::take(&mut self.has_new_multipliers);
         match self.routing {
-            RoutingState::Dual(_) if !has_new_multipliers && !self.has_untold_flows => {
+            RoutingState::Dual(_)
+                if !has_new_multipliers && !self.has_untold_flows && self.caches() =>
+            {
                 debug_assert!(self.may_skip(Self::shares_stand), "robot {}: old shares", self.id);
                 return;
             }
@@ -355,7 +357,7 @@ impl Robot {
 
     /// What flows out. Where its flows are those that it has told, it need not look at its links.
     fn known_outflow(&self) -> f64 {
-        if self.has_untold_flows {
+        if self.has_untold_flows || !self.caches() {
             return self.outflow();
         }
         debug_assert!(self.may_skip(Self::outflow_stands), "robot {} overlooks its flows", self.id);
@@ -551,7 +553,7 @@ impl Robot {
 
     /// All flows are known: eq. (5).
     pub(super) fn settle_residual(&mut self) {
-        if std::mem::take(&mut self.is_unsettled) {
+        if std::mem::take(&mut self.is_unsettled) || !self.caches() {
             self.add_up_inflow();
             self.residual = self.balance();
         }

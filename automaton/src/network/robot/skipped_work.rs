@@ -2,7 +2,8 @@
 //! looking at its neighbours, finding and going through its links, choosing shares, and all of these where a control
 //! period is like the one before.
 //!
-//! Skipping is right if the work would change nothing. Builds with debug assertions verify that for guards, facts,
+//! Skipping is right if the work would change nothing. [`without_caching`](super::super::scenario::ValidScenario::without_caching)
+//! switches it off, and missions are the same to the byte. Builds with debug assertions verify that for guards, facts,
 //! beacons, links and shares, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
 //! messages, which are processed again on a copy. Explorers verify it in every state of a robot, but for shares and for
 //! periods that are like the one before: to them every period is new.
@@ -17,6 +18,11 @@ use crate::network::duty::Duty;
 const PERIODS_PER_CHECK: u32 = 4;
 
 impl Robot {
+    /// Whether it keeps what it has derived.
+    pub(super) fn caches(&self) -> bool {
+        self.site.settings.caching
+    }
+
     /// Whether what is left out is looked at in this period.
     pub(super) fn is_looked_at(&self) -> bool {
         self.period.is_multiple_of(PERIODS_PER_CHECK)
@@ -34,7 +40,8 @@ impl Robot {
     /// [tells](crate::network::beacon::Beacon::sightings) where they are.
     pub(super) fn is_undisturbed(&self) -> bool {
         use Duty::{Junction, Leaf, Relay, Standby};
-        matches!(*self.duty, Standby(_) | Relay(_) | Junction(_) | Leaf(_))
+        self.caches()
+            && matches!(*self.duty, Standby(_) | Relay(_) | Junction(_) | Leaf(_))
             && self.is_quiet
             && !self.is_late
             && !self.awaits_confirmation

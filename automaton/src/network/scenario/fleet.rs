@@ -30,6 +30,11 @@ impl Fleet {
         &self.robots
     }
 
+    /// The same fleet, whose robots derive everything anew.
+    pub(super) fn without_caching(&self) -> Self {
+        Fleet { scenario: self.scenario.without_caching(), ..self.clone() }
+    }
+
     /// Its scenario.
     pub const fn scenario(&self) -> &ValidScenario {
         &self.scenario

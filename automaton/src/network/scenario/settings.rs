@@ -53,6 +53,9 @@ pub struct Settings {
     pub unreachable: Unreachable,
     /// Which of the tasks is announced next.
     pub order: TaskOrder,
+    /// Whether robots keep what they have derived for as long as nothing that it depends on has changed. Without it they
+    /// derive everything anew at each tick, with the same results.
+    pub caching: bool,
 }
 
 impl Settings {
@@ -119,6 +122,7 @@ impl Settings {
             teams: control.teams.unwrap_or_default(),
             unreachable: mission.unreachable.unwrap_or_default(),
             order: mission.order.unwrap_or_default(),
+            caching: true,
         }
     }
 

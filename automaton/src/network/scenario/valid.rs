@@ -100,6 +100,17 @@ impl ValidScenario {
         }
     }
 
+    /// The same scenario, whose robots derive everything anew at each tick instead of what has changed. All results are the
+    /// same; it serves to verify that.
+    #[must_use]
+    pub fn without_caching(&self) -> Self {
+        Self {
+            scenario: self.scenario.clone(),
+            site: Arc::new(self.site.without_caching()),
+            fleets: self.fleets.iter().map(Fleet::without_caching).collect(),
+        }
+    }
+
     /// The scenario.
     pub const fn scenario(&self) -> &Scenario {
         &self.scenario
