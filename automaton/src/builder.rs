@@ -133,9 +133,10 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     ///
     /// # Errors
     ///
-    /// The first [`BuildError`] found: in the vocabularies, the table, the guards, then in what
+    /// The first [`BuildError`] found: in the vocabularies, the names, the table, the guards, then in what
     /// is said about the locations.
     pub fn build(mut self) -> Result<Automaton<L, E, S>, BuildError> {
+        self.draft()?.check_names()?;
         self.resolve_signals()?;
         let mut draft = self.draft()?;
         draft.check()?;
