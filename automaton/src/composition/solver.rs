@@ -180,10 +180,10 @@ impl<'a> Solver<'a> {
         }
         for (place, row) in self.field.rows.iter().enumerate() {
             if let Row::Line(rate) = *row {
-                let first = Moment::from(self.field.start[place]);
-                let moved = first + Moment::from(rate) * time;
+                let first = self.field.start[place];
+                let moved = || Moment::from(first) + Moment::from(rate) * time;
                 // Over infinite rates nothing is exact.
-                state[place] = if rate == 0.0 { first.seconds() } else { moved.seconds() };
+                state[place] = if rate == 0.0 { first } else { moved().seconds() };
             }
         }
         self.field.overlay(time.seconds(), &mut state);
