@@ -1,6 +1,6 @@
 //! The vector field of a group: the flows of its components in their locations, as one.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
@@ -39,6 +39,10 @@ pub(super) struct Field<'a> {
     /// By variable of the group.
     pub(super) rows: Vec<Row>,
     pub(super) start: Vec<f64>,
+    /// See [`integrated`](Self::integrated).
+    integrated: OnceCell<Box<[usize]>>,
+    /// A state of all variables and their rates, where not all are integrated.
+    completed: RefCell<[Vec<f64>; 2]>,
     /// Room for the coordinates of a component and their rates, and for a state.
     scratch: RefCell<[Vec<f64>; 3]>,
     /// By moving component: the places of its tape, once they are needed.
@@ -106,6 +110,8 @@ impl<'a> Field<'a> {
             rows,
             start,
             hold,
+            integrated: OnceCell::new(),
+            completed: RefCell::default(),
             places: RefCell::default(),
             scratch: RefCell::default(),
             ranges: RefCell::default(),
@@ -115,6 +121,27 @@ impl<'a> Field<'a> {
     /// Whether all variables move along lines, or are solved by themselves.
     pub(super) fn is_straight(&self) -> bool {
         !self.rows.contains(&Row::Curved)
+    }
+
+    /// The variables that an integrator follows: those with curved rows, and those on lines that the
+    /// components of these may read. Rates read others as they are at the start.
+    pub(super) fn integrated(&self) -> &[usize] {
+        self.integrated.get_or_init(|| {
+            let is_curved = |place: usize| self.rows[place] == Row::Curved;
+            let moves = |place: usize| !matches!(self.rows[place], Row::Line(0.0) | Row::Solved);
+            let mut belongs = vec![false; self.rows.len()];
+            for (component, _) in &self.moving {
+                if component.owned_places().any(is_curved) {
+                    component.places.iter().for_each(|&place| belongs[place] |= moves(place));
+                }
+            }
+            (0..belongs.len()).filter(|&place| belongs[place]).collect()
+        })
+    }
+
+    /// Of a state of all variables those that are integrated.
+    pub(super) fn integrated_of(&self, state: &[f64]) -> Vec<f64> {
+        self.integrated().iter().map(|&place| state[place]).collect()
     }
 
     /// Whether a component solves its flow itself.
@@ -173,6 +200,27 @@ impl<'a> Field<'a> {
             }
         }
         Some((offsets, entries))
+    }
+
+    /// What is solved by itself has rate 0 here, and others see it where it is at `time`.
+    fn all_rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
+        if let Some(tape) = self.whole {
+            let mut tapes = self.places.borrow_mut();
+            if tapes.is_empty() {
+                tapes.push(tape.places());
+            }
+            return tape.evaluate(state, &mut tapes[0], rates);
+        }
+        rates.fill(0.0);
+        if self.solved.is_empty() {
+            return self.add_rates(state, rates);
+        }
+        let mut overlaid = std::mem::take(&mut self.scratch.borrow_mut()[2]);
+        overlaid.clear();
+        overlaid.extend_from_slice(state);
+        self.overlay(time, &mut overlaid);
+        self.add_rates(&overlaid, rates);
+        self.scratch.borrow_mut()[2] = overlaid;
     }
 
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
@@ -333,25 +381,20 @@ impl<'a> Field<'a> {
 }
 
 impl VectorField for Field<'_> {
-    /// What is solved by itself has rate 0 here, and others see it where it is at `time`.
+    /// The rates of the variables that are integrated.
     fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
-        if let Some(tape) = self.whole {
-            let mut tapes = self.places.borrow_mut();
-            if tapes.is_empty() {
-                tapes.push(tape.places());
-            }
-            return tape.evaluate(state, &mut tapes[0], rates);
+        let integrated = self.integrated();
+        if integrated.len() == self.rows.len() {
+            return self.all_rates(time, state, rates);
         }
-        rates.fill(0.0);
-        if self.solved.is_empty() {
-            return self.add_rates(state, rates);
+        let [all, changes] = &mut *self.completed.borrow_mut();
+        if all.is_empty() {
+            all.clone_from(&self.start);
+            changes.clone_from(&self.start);
         }
-        let mut overlaid = std::mem::take(&mut self.scratch.borrow_mut()[2]);
-        overlaid.clear();
-        overlaid.extend_from_slice(state);
-        self.overlay(time, &mut overlaid);
-        self.add_rates(&overlaid, rates);
-        self.scratch.borrow_mut()[2] = overlaid;
+        integrated.iter().zip(state).for_each(|(&place, value)| all[place] = *value);
+        self.all_rates(time, all, changes);
+        rates.iter_mut().zip(integrated).for_each(|(rate, &place)| *rate = changes[place]);
     }
 }
 
@@ -380,7 +423,7 @@ impl Composition {
             let start: Vec<f64> = group.slots.iter().map(|&slot| values[slot]).collect();
             let field = Field::of(self, group, locations, start.clone());
             let mut rates = vec![0.0; start.len()];
-            field.rates(0.0, &start, &mut rates);
+            field.all_rates(0.0, &start, &mut rates);
             let moving = rates.iter().position(|rate| *rate != 0.0);
             let variable = moving.map(|place| self.variables[group.slots[place]].clone());
             variable.or_else(|| field.solved.first().map(|(component, _)| component.name.clone()))

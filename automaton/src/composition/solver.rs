@@ -79,7 +79,8 @@ impl<'a> Solver<'a> {
             }
             None => {
                 field.choose_sides(0.0, &field.start);
-                let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
+                let start = field.integrated_of(&field.start);
+                let integrator = Integrator::new(field, 0.0, &start, settings.tolerances());
                 Method::Steps(Box::new(integrator.with_method(settings.method)))
             }
         };
@@ -332,6 +333,7 @@ impl<'a> Solver<'a> {
         let mut state = self.field.start.clone();
         piece.state_at(time, &mut state);
         let kink = self.field.choose_sides(time, &state)?;
+        let state = self.field.integrated_of(&state);
         self.integrator()?.restart(time, &state);
         Some(kink)
     }
@@ -373,17 +375,15 @@ impl<'a> Solver<'a> {
         let (origin, scale) = (curved.origin(), curved.scale());
         let mut piece = Piece::new(curved.start(), curved.end(), origin, scale)
             .with_room(self.field.rows.len(), curved.degree().max(1) + 1);
+        let variables = match &self.method {
+            Method::Lines => &[],
+            Method::Linear(_, variables) => &**variables,
+            Method::Steps(_) => self.field.integrated(),
+        };
         let mut next = 0;
         for (place, row) in self.field.rows.iter().enumerate() {
-            let own = match &self.method {
-                Method::Lines => None,
-                Method::Linear(_, variables) => {
-                    let own = (variables.get(next) == Some(&place)).then_some(next);
-                    next += usize::from(own.is_some());
-                    own
-                }
-                Method::Steps(_) => Some(place),
-            };
+            let own = (variables.get(next) == Some(&place)).then_some(next);
+            next += usize::from(own.is_some());
             match (row, own) {
                 (Row::Curved, Some(own)) => {
                     piece.push(curved.coefficients(own).iter().copied(), curved.error(own));
