@@ -31,7 +31,7 @@ pub(super) enum Row {
 
 /// The flow of a group in its locations, from a state on.
 pub(super) struct Field<'a> {
-    /// Those that do not solve their flow themselves, each with its mode.
+    /// Those that neither move along lines alone nor solve their flow themselves, each with its mode.
     moving: Vec<(&'a Component, &'a Mode)>,
     solved: Vec<(&'a Component, &'a Solution)>,
     /// The rates of all variables, if one component says how all of them move and none has a kink to hold.
@@ -82,12 +82,16 @@ impl<'a> Field<'a> {
                     component.owned_places().for_each(|place| rows[place] = Row::Solved);
                     solved.push((component, &**advance));
                 }
-                ModeMotion::Rates(rates) if rates.is_empty() => {}
                 ModeMotion::Rates(rates) => {
+                    let mut is_curved = false;
                     for rate in rates {
-                        rows[component.places[rate.coordinate]] = rate.row();
+                        let row = rate.row();
+                        is_curved |= row == Row::Curved;
+                        rows[component.places[rate.coordinate]] = row;
                     }
-                    moving.push((component, mode));
+                    if is_curved {
+                        moving.push((component, mode));
+                    }
                 }
                 ModeMotion::Field(_) => {
                     component.owned_places().for_each(|place| rows[place] = Row::Curved);
@@ -127,13 +131,10 @@ impl<'a> Field<'a> {
     /// components of these may read. Rates read others as they are at the start.
     pub(super) fn integrated(&self) -> &[usize] {
         self.integrated.get_or_init(|| {
-            let is_curved = |place: usize| self.rows[place] == Row::Curved;
             let moves = |place: usize| !matches!(self.rows[place], Row::Line(0.0) | Row::Solved);
             let mut belongs = vec![false; self.rows.len()];
             for (component, _) in &self.moving {
-                if component.owned_places().any(is_curved) {
-                    component.places.iter().for_each(|&place| belongs[place] |= moves(place));
-                }
+                component.places.iter().for_each(|&place| belongs[place] |= moves(place));
             }
             (0..belongs.len()).filter(|&place| belongs[place]).collect()
         })
@@ -182,7 +183,7 @@ impl<'a> Field<'a> {
 
     /// What the rates of the group are if all are linear: their constants, and the coefficients.
     fn entries(&self) -> Option<(Vec<f64>, Vec<Entry>)> {
-        let (mut offsets, mut entries) = (vec![0.0; self.rows.len()], Vec::new());
+        let (mut offsets, mut entries) = (self.rates_of_lines(), Vec::new());
         for (component, mode) in &self.moving {
             let ModeMotion::Rates(rates) = &mode.motion else { return None };
             for rate in rates {
@@ -202,8 +203,14 @@ impl<'a> Field<'a> {
         Some((offsets, entries))
     }
 
-    /// What is solved by itself has rate 0 here, and others see it where it is at `time`.
-    fn all_rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
+    /// The rates of what moves along lines, and 0 for others.
+    fn rates_of_lines(&self) -> Vec<f64> {
+        let rate = |row: &Row| if let Row::Line(rate) = row { *rate } else { 0.0 };
+        self.rows.iter().map(rate).collect()
+    }
+
+    /// Writes the rates of what curves. What is solved by itself is seen where it is at `time`.
+    fn curve(&self, time: f64, state: &[f64], rates: &mut [f64]) {
         if let Some(tape) = self.whole {
             let mut tapes = self.places.borrow_mut();
             if tapes.is_empty() {
@@ -211,7 +218,6 @@ impl<'a> Field<'a> {
             }
             return tape.evaluate(state, &mut tapes[0], rates);
         }
-        rates.fill(0.0);
         if self.solved.is_empty() {
             return self.add_rates(state, rates);
         }
@@ -385,15 +391,20 @@ impl VectorField for Field<'_> {
     fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
         let integrated = self.integrated();
         if integrated.len() == self.rows.len() {
-            return self.all_rates(time, state, rates);
+            for (rate, row) in rates.iter_mut().zip(&self.rows) {
+                if let Row::Line(line) = row {
+                    *rate = *line;
+                }
+            }
+            return self.curve(time, state, rates);
         }
         let [all, changes] = &mut *self.completed.borrow_mut();
         if all.is_empty() {
             all.clone_from(&self.start);
-            changes.clone_from(&self.start);
+            *changes = self.rates_of_lines();
         }
         integrated.iter().zip(state).for_each(|(&place, value)| all[place] = *value);
-        self.all_rates(time, all, changes);
+        self.curve(time, all, changes);
         rates.iter_mut().zip(integrated).for_each(|(rate, &place)| *rate = changes[place]);
     }
 }
@@ -422,8 +433,8 @@ impl Composition {
         self.groups.iter().find_map(|group| {
             let start: Vec<f64> = group.slots.iter().map(|&slot| values[slot]).collect();
             let field = Field::of(self, group, locations, start.clone());
-            let mut rates = vec![0.0; start.len()];
-            field.all_rates(0.0, &start, &mut rates);
+            let mut rates = field.rates_of_lines();
+            field.curve(0.0, &start, &mut rates);
             let moving = rates.iter().position(|rate| *rate != 0.0);
             let variable = moving.map(|place| self.variables[group.slots[place]].clone());
             variable.or_else(|| field.solved.first().map(|(component, _)| component.name.clone()))
