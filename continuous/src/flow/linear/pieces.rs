@@ -16,6 +16,8 @@ use crate::flow::{Curve, Piece};
 const LENGTH: f64 = 2.0;
 /// The most terms of a Taylor polynomial.
 const MOST_TERMS: usize = 32;
+/// For how many terms there is room at first.
+const FEW_TERMS: usize = 8;
 /// Terms of this part of the sum of magnitudes are below rounding.
 const NEGLIGIBLE: f64 = 1e-17;
 /// How often a piece may be halved before interpolation is tried.
@@ -87,7 +89,8 @@ impl Exponential {
         let mut sums = most.clone();
         let mut moved = vec![0.0; most.len()];
         let (mut next, mut next_most) = (term.clone(), most.clone());
-        let mut terms = state.to_vec();
+        let mut terms = Vec::with_capacity(FEW_TERMS * dimension);
+        terms.extend_from_slice(state);
         for degree in 1..=MOST_TERMS + 1 {
             let step = length / degree as f64;
             for ((row, next), next_most) in self.generator.iter().zip(&mut next).zip(&mut next_most)
@@ -108,7 +111,8 @@ impl Exponential {
                 && let Some(rest) = remainder(&most, &sums, &moved, degree)
                 && rest <= NEGLIGIBLE
             {
-                let mut piece = Piece::new(start, start + length, start, length);
+                let mut piece = Piece::new(start, start + length, start, length)
+                    .with_room(dimension, degree - 1);
                 let terms = &terms[..(degree - 1) * dimension];
                 for (i, sum) in sums[..dimension].iter().enumerate() {
                     piece.push(terms.iter().copied().skip(i).step_by(dimension), rest * sum);
