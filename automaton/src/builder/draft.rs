@@ -197,6 +197,10 @@ impl<'a> Draft<'a> {
                 return Err(BuildError::GuardWithoutRow { guard, event });
             }
         }
+        let is_row = |event: usize| self.parts.rows.iter().any(|row| row.event == event);
+        if let Some((event, _)) = self.parts.samplings.iter().find(|(event, _)| !is_row(*event)) {
+            return Err(BuildError::SampledWithoutRow { event: self.events[*event] });
+        }
         once(self.parts.conditions.iter().map(|(event, _)| *event), "guard", &self.events)?;
         once(self.parts.described(), "flow", &self.locations)?;
         once(self.parts.restricted(), "invariant", &self.locations)

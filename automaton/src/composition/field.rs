@@ -209,6 +209,13 @@ impl<'a> Field<'a> {
         self.rows.iter().map(rate).collect()
     }
 
+    /// The rates of all variables at the start; 0 of what is solved by itself.
+    pub(super) fn first_rates(&self) -> Vec<f64> {
+        let mut rates = self.rates_of_lines();
+        self.curve(0.0, &self.start, &mut rates);
+        rates
+    }
+
     /// Writes the rates of what curves. What is solved by itself is seen where it is at `time`.
     fn curve(&self, time: f64, state: &[f64], rates: &mut [f64]) {
         if let Some(tape) = self.whole {
@@ -432,10 +439,8 @@ impl Composition {
     pub(super) fn mover(&self, locations: &[usize], values: &[f64]) -> Option<String> {
         self.groups.iter().find_map(|group| {
             let start: Vec<f64> = group.slots.iter().map(|&slot| values[slot]).collect();
-            let field = Field::of(self, group, locations, start.clone());
-            let mut rates = field.rates_of_lines();
-            field.curve(0.0, &start, &mut rates);
-            let moving = rates.iter().position(|rate| *rate != 0.0);
+            let field = Field::of(self, group, locations, start);
+            let moving = field.first_rates().iter().position(|rate| *rate != 0.0);
             let variable = moving.map(|place| self.variables[group.slots[place]].clone());
             variable.or_else(|| field.solved.first().map(|(component, _)| component.name.clone()))
         })

@@ -382,7 +382,8 @@ pub(super) mod tests {
     #[test]
     fn nothing_happens_up_to_an_earlier_time() {
         let onset = End::Onset(Onset { before: 0.5, time: 2.0 });
-        for end in [End::At(Moment::from(2.0), Vec::new()), End::Leaving(Moment::from(2.0)), onset] {
+        for end in [End::At(Moment::from(2.0), Vec::new()), End::Leaving(Moment::from(2.0)), onset]
+        {
             assert!(end.is_after(1.0) && end.is_after(2f64.next_down()));
             assert!(!end.is_after(2.0) && !end.is_after(3.0));
         }
