@@ -87,6 +87,10 @@ impl<'a> Product<'a> {
         self.variables.iter().chain(others).any(|known| known == name)
     }
 
+    fn is_input(&self, name: &str) -> bool {
+        self.shares.contains_key(name) || self.inputs.iter().any(|(input, _)| input == name)
+    }
+
     fn wrong<T>(&self, problem: String) -> Result<T> {
         Err(SpaceExError::Model { line: self.line, problem })
     }

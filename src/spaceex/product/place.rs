@@ -80,10 +80,7 @@ impl Product<'_> {
     /// A bound on an input alone.
     pub(super) fn is_input_bound(&self, clause: &Clause) -> bool {
         let Clause::Compare { left, right, .. } = clause else { return false };
-        let is_input = |side: &Side| {
-            let is_known = |name: &str| self.inputs.iter().any(|(input, _)| input == name);
-            side.name().is_some_and(|name| is_known(name) || self.shares.contains_key(name))
-        };
+        let is_input = |side: &Side| side.name().is_some_and(|name| self.is_input(name));
         let is_number =
             |side: &Side| matches!(side, Side::Formula(formula) if formula.evaluate(&()).is_ok());
         is_input(left) && is_number(right) || is_input(right) && is_number(left)
