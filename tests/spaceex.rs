@@ -734,8 +734,14 @@ fn an_input_may_have_other_bounds_in_other_locations() {
     assert!(said.contains("some of its bounds are strict"), "{said}");
     assert!(refusal(&model("&lt;="), &asked("u >= 5")).contains("`u` is an input"));
     // A number of the model may have the name that the place of an input between its bounds would have.
-    let shared = model("&lt;=").replace("\"t\"", "\"u_share\"").replace("t ", "u_share ");
-    let shared = shared.replace("t' ", "u_share' ");
+    let names = [
+        ("\"t\"", "\"u_share\""),
+        (" t ", " u_share "),
+        (">t ", ">u_share "),
+        (" t'", " u_share'"),
+    ];
+    let renamed = |model: String, (one, other): (&str, &str)| model.replace(one, other);
+    let shared = names.into_iter().fold(model("&lt;="), renamed);
     let asked = asked("x >= 3.9").replace("t == 0", "u_share == 0");
     assert_eq!(verdict(&problem([&shared, &asked])), Verdict::Violated);
 }
