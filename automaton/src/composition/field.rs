@@ -398,7 +398,8 @@ impl VectorField for Field<'_> {
     fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
         let integrated = self.integrated();
         if integrated.len() == self.rows.len() {
-            for (rate, row) in rates.iter_mut().zip(&self.rows) {
+            let lines = if self.whole.is_some() { &[] } else { &self.rows[..] };
+            for (rate, row) in rates.iter_mut().zip(lines) {
                 if let Row::Line(line) = row {
                     *rate = *line;
                 }

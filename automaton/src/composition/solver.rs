@@ -48,6 +48,8 @@ pub(super) struct Solver<'a> {
     /// Where the solution touches a jump of its rates, for all that is known.
     grazes: Vec<Doubt>,
     enclosures: Vec<Enclosure>,
+    /// The span of the last piece that they are of.
+    enclosed: Option<[f64; 2]>,
     /// Whether the integrator itself solves for all variables.
     is_complete: bool,
     /// What steps must not pass over unseen, where rates are such that they could.
@@ -98,6 +100,7 @@ impl<'a> Solver<'a> {
             kink: None,
             grazes: Vec::new(),
             enclosures: Vec::new(),
+            enclosed: None,
             is_complete,
             seen_to,
         })
@@ -201,6 +204,7 @@ impl<'a> Solver<'a> {
         if self.overflows(&piece) {
             return Err("the state grows beyond the largest number".to_owned());
         }
+        self.enclosed = None;
         let bounded = self.check_rates(&piece).and_then(|()| self.check_radicands(&piece));
         let end = bounded.as_ref().err().map_or(piece.end(), |(singularity, _)| *singularity);
         let progress = self.check_progress(&piece);
@@ -459,7 +463,10 @@ impl<'a> Solver<'a> {
         piece: &Piece,
         [from, to]: [f64; 2],
     ) -> Interval {
-        piece.enclose(from, to, &mut self.enclosures);
+        if self.enclosed != Some([from, to]) {
+            piece.enclose(from, to, &mut self.enclosures);
+            self.enclosed = Some([from, to]);
+        }
         let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
         let margins = condition.comparisons().iter();
         let ranges = margins.map(|it| it.margin(&self.enclosures, &component.places, half).range);

@@ -99,9 +99,5 @@ fn row_of(run: &Run<'_>) -> Row {
 
 /// Settings with the tolerances of all.
 fn settings() -> Settings {
-    Settings {
-        relative_tolerance: TOLERANCE,
-        absolute_tolerance: TOLERANCE,
-        ..Settings::default()
-    }
+    Settings { relative_tolerance: TOLERANCE, absolute_tolerance: TOLERANCE, ..Settings::default() }
 }

@@ -51,7 +51,11 @@ fn main() -> io::Result<()> {
     }
     let mut report = Report::default();
     if let [one @ ("ways" | "loops")] = arguments[..] {
-        if one == "ways" { ways::all(&mut report) } else { loops::all(&mut report) }
+        if one == "ways" {
+            ways::all(&mut report)
+        } else {
+            loops::all(&mut report)
+        }
         print!("{report}");
         return Ok(());
     }

@@ -158,11 +158,7 @@ impl Sampled {
     }
 
     /// Runs the loop with a plant that `advance` carries from one instant to another under a force.
-    fn run(
-        &self,
-        ticks: u32,
-        mut advance: impl FnMut([f64; 2], f64, [f64; 2]) -> [f64; 2],
-    ) -> f64 {
+    fn run(&self, ticks: u32, mut advance: impl FnMut([f64; 2], f64, [f64; 2]) -> [f64; 2]) -> f64 {
         let (mut state, mut force) = ([0.0, 0.0], 0.0);
         let (mut integral, mut output) = (0.0, 0.0);
         let mut under_way: VecDeque<(f64, f64)> = VecDeque::new();
@@ -179,7 +175,8 @@ impl Sampled {
             if !self.is_delayed {
                 force = output;
             }
-            while let Some((arrival, message)) = under_way.pop_front_if(|it| it.0 < next) {
+            while let Some(&(arrival, message)) = under_way.front().filter(|it| it.0 < next) {
+                under_way.pop_front();
                 state = advance(state, force, [now, arrival]);
                 (now, force) = (arrival, message);
             }
