@@ -111,6 +111,7 @@ fn exact(samples: usize) -> Vec<f64> {
 #[test]
 fn a_sampled_loop_with_delay_saturation_and_load_is_exact() {
     let room = heated_room();
+    assert!(room.check().findings().is_empty(), "{}", room.check());
     let trajectory = room.run(4.0).expect("it runs");
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
     let exact = exact(400);
