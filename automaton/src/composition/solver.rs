@@ -177,20 +177,25 @@ impl<'a> Solver<'a> {
     ///
     /// As for [`piece_at`](Self::piece_at).
     pub(super) fn state_at(&mut self, time: Moment) -> Result<Vec<f64>, String> {
-        let mut state = self.field.start.clone();
-        if !matches!(self.method, Method::Lines) {
-            let limit = time.seconds();
-            self.piece_at(limit, limit)?.state_at(limit, &mut state);
+        let (field, is_complete) = (self.field, self.is_complete);
+        let (mut state, at) = (field.start.clone(), time.seconds());
+        let piece = if self.is_straight() { None } else { Some(self.piece_at(at, at)?) };
+        if let Some(piece) = piece.filter(|_| is_complete) {
+            piece.state_at(at, &mut state);
+            return Ok(state);
         }
-        for (place, row) in self.field.rows.iter().enumerate() {
-            if let Row::Line(rate) = *row {
-                let first = self.field.start[place];
-                let moved = || Moment::from(first) + Moment::from(rate) * time;
+        let at = piece.map_or(at, |piece| at.clamp(piece.start(), piece.end()));
+        for (place, (row, value)) in field.rows.iter().zip(&mut state).enumerate() {
+            match (*row, piece) {
                 // Over infinite rates nothing is exact.
-                state[place] = if rate == 0.0 { first } else { moved().seconds() };
+                (Row::Line(0.0), _) | (Row::Curved | Row::Solved, None) => {}
+                (Row::Line(rate), _) => {
+                    *value = (Moment::from(*value) + Moment::from(rate) * time).seconds();
+                }
+                (Row::Curved | Row::Solved, Some(piece)) => *value = piece.value(place, at),
             }
         }
-        self.field.overlay(time.seconds(), &mut state);
+        field.overlay(time.seconds(), &mut state);
         Ok(state)
     }
 
@@ -225,9 +230,7 @@ impl<'a> Solver<'a> {
         let start = self.reached;
         let curved = match &mut self.method {
             Method::Lines => Piece::new(start, limit, 0.0, 1.0),
-            Method::Linear(flow, _) => {
-                flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
-            }
+            Method::Linear(flow, _) => flow.piece_up_to(start, limit).within(start, limit),
             Method::Steps(integrator) => {
                 let limit =
                     self.field.next_kink(self.settled).map_or(limit, |kink| limit.min(kink));

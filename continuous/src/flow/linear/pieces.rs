@@ -28,10 +28,12 @@ const EXACT: f64 = 1e-12;
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 impl LinearFlow {
-    pub(super) fn piece_from(&self, time: f64) -> Piece {
+    /// The [piece](Curve::piece) that holds `time`, which may end at `limit`: a short one has few terms.
+    pub fn piece_up_to(&self, time: f64, limit: f64) -> Piece {
         let start = time.clamp(0.0, self.duration);
         let Some(coefficients) = &self.polynomial else {
-            return self.piece_of(self.field.exponential(), start);
+            let end = if limit > start { limit.min(self.duration) } else { self.duration };
+            return self.piece_of(self.field.exponential(), start, end);
         };
         let mut piece = Piece::new(0.0, self.duration, 0.0, 1.0);
         for component in 0..self.dimension() {
@@ -40,11 +42,13 @@ impl LinearFlow {
         piece
     }
 
-    fn piece_of(&self, exponential: &Exponential, start: f64) -> Piece {
-        let left = self.duration - start;
+    fn piece_of(&self, exponential: &Exponential, start: f64, end: f64) -> Piece {
+        let left = end - start;
         let wanted = (LENGTH / std::f64::consts::PI * exponential.time_scale(start)).min(left);
-        let mut state = vec![0.0; self.dimension()];
-        self.state_at(start, &mut state);
+        let mut state = self.start.clone();
+        if start > 0.0 {
+            self.state_at(start, &mut state);
+        }
         let mut length = wanted;
         for _ in 0..=HALVINGS {
             if let Some(piece) = exponential.taylor(&state, start, length) {
