@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 TOLERANCE = 1e-9
 EVENTS = 128
 TICKS = 512
-RUNS = 3
+RUNS = 10
 
 
 def integrate(field, times, state, event=None):
