@@ -2,6 +2,7 @@
 
 use crate::command_line::pleach;
 use crate::generated::keep_up_to_date;
+use pleach::automaton::diagram::Patch;
 use pleach::guards::Interval;
 use pleach::spaceex::{self, Initial, Problem, Verdict, Written};
 use pleach::verify::reach::{Completion, Directions, Effort, StateSet};
@@ -677,6 +678,24 @@ fn outputs_stand_for_their_formulas() {
     assert_eq!(verdict(&asked("y >= 5.1")), Verdict::Holds);
     assert_eq!(verdict(&asked("x >= 2.1")), Verdict::Holds);
     assert_eq!(verdict(&asked("y >= 4.5")), Verdict::Violated);
+    // It can be drawn: 2 x + 1 in every set and along every run.
+    assert_eq!(tank.shown, ["x", "y"]);
+    let solution = tank.solve(&Effort::default(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let picture = solution.picture("tank", ["x", "y"], &tank.runs(2)).unwrap();
+    assert!(!picture.patches.is_empty() && !picture.runs.is_empty());
+    for Patch { across, up, .. } in &picture.patches {
+        assert!(across.iter().zip(up).all(|(x, y)| (2.0 * x + 1.0 - y).abs() < 1e-9));
+    }
+    for sample in picture.runs.iter().flatten() {
+        assert!((2.0 * sample.values[0] + 1.0 - sample.values[1]).abs() < 1e-12);
+        assert!((2.0 * sample.rates[0] - sample.rates[1]).abs() < 1e-12);
+    }
+    assert!(solution.picture("tank", ["t", "q"], &[]).unwrap_err().contains("there are x, y, z"));
+    let nowhere = refusal(TANK, "forbidden = \"y >= 5.1\"\ntime-horizon = 10\n");
+    assert!(
+        nowhere.starts_with("line 2 of the configuration: there is no `initially`"),
+        "{nowhere}"
+    );
 }
 
 /// The input is within ±1 at first, and from the jump at 1 s on between 2 and 3: x is at most 1 + 3, and can
@@ -713,7 +732,18 @@ fn an_input_may_have_other_bounds_in_other_locations() {
     assert_eq!(verdict_of("x >= 3.9"), Verdict::Violated);
     let said = refusal(&model("&lt;"), &asked("x >= 5"));
     assert!(said.contains("some of its bounds are strict"), "{said}");
-    assert!(refusal(&model("&lt;="), &asked("u >= 5")).contains("`u` is no variable"));
+    assert!(refusal(&model("&lt;="), &asked("u >= 5")).contains("`u` is an input"));
+    // A number of the model may have the name that the place of an input between its bounds would have.
+    let names = [
+        ("\"t\"", "\"u_share\""),
+        (" t ", " u_share "),
+        (">t ", ">u_share "),
+        (" t'", " u_share'"),
+    ];
+    let renamed = |model: String, (one, other): (&str, &str)| model.replace(one, other);
+    let shared = names.into_iter().fold(model("&lt;="), renamed);
+    let asked = asked("x >= 3.9").replace("t == 0", "u_share == 0");
+    assert_eq!(verdict(&problem([&shared, &asked])), Verdict::Violated);
 }
 
 /// The time to read a model grows with its length, and not with its square.

@@ -12,6 +12,7 @@ use pleach_guards::{
 use thiserror::Error;
 
 use crate::builder::Builder;
+use crate::composition::Sampling;
 use crate::coordinates::Coordinates;
 use crate::coverage::tally::Tally;
 use crate::flow::Flow;
@@ -78,6 +79,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) parameters: Vec<(String, f64)>,
     /// Names of formulas of coordinates and parameters, with these.
     pub(crate) signals: Vec<Signal>,
+    /// The events that are taken at samples.
+    pub(crate) samplings: Vec<(E, Sampling)>,
     /// The coordinates of which no other component may say how they move.
     pub(crate) own: Vec<&'static str>,
     pub(crate) locations: Vec<L>,
@@ -216,6 +219,11 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// The names that stand for numbers, with these.
     pub fn parameters(&self) -> impl ExactSizeIterator<Item = (&str, f64)> {
         self.parameters.iter().map(|(name, value)| (name.as_str(), *value))
+    }
+
+    /// The names of the events that are taken at samples, and when.
+    pub(crate) fn samplings(&self) -> impl Iterator<Item = (&'static str, Sampling)> {
+        self.samplings.iter().map(|(event, sampling)| (event.name(), *sampling))
     }
 
     /// The signals, each with its formula of coordinates and parameters.

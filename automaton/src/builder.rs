@@ -14,6 +14,7 @@ use pleach_guards::{Expression, Guard, Predicate, Substitution, Valuation};
 pub use error::BuildError;
 
 use crate::automaton::{Automaton, Mode, Transition};
+use crate::composition::Sampling;
 use crate::coordinates::{Coordinate, Coordinates};
 use crate::edge::Edge;
 use crate::flow::{Flow, Rate};
@@ -133,9 +134,10 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     ///
     /// # Errors
     ///
-    /// The first [`BuildError`] found: in the vocabularies, the table, the guards, then in what
+    /// The first [`BuildError`] found: in the vocabularies, the names, the table, the guards, then in what
     /// is said about the locations.
     pub fn build(mut self) -> Result<Automaton<L, E, S>, BuildError> {
+        self.draft()?.check_names()?;
         self.resolve_signals()?;
         let mut draft = self.draft()?;
         draft.check()?;
@@ -153,6 +155,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             known: self.parts.known.take(),
             parameters: take(&mut self.parts.parameters),
             signals: take(&mut self.parts.signals),
+            samplings: mapped(&self.parts.samplings, |(event, it)| (self.events[*event], *it)),
             own: Vec::new(),
             tally: None,
             exclusion: self.exclusion.clone(),
@@ -306,6 +309,9 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
         builder.parts.signals = automaton.signals.clone();
         builder.substitute = Reset::substitute;
         builder.parts.ranges = automaton.ranges.clone();
+        for (event, sampling) in &automaton.samplings {
+            builder = builder.sampled(*event, *sampling);
+        }
         builder
     }
 
@@ -329,6 +335,55 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
     pub fn signal(mut self, name: &str, formula: impl Into<Expression>) -> Self {
         self.parts.signals.push((name.to_owned(), formula.into()));
         self.substitute = Reset::substitute;
+        self
+    }
+
+    /// Transitions on `event` are taken at 0, `period`, 2 `period`, … seconds and at no other time, without a
+    /// clock in the state: where the guard of one of them holds at such an instant, it is taken, and else the
+    /// sample passes. A [composition](crate::CompositionBuilder::every) can say the same of its components.
+    ///
+    /// A thermostat that looks at the temperature once a second:
+    ///
+    /// ```
+    /// use pleach_automaton::{Automaton, coordinates, from};
+    /// use pleach_discrete::vocabulary;
+    ///
+    /// vocabulary! {
+    ///     enum Heater: Location { Off = "off", On = "on" }
+    ///     enum Sensed: Event { Cold = "cold", Warm = "warm" }
+    /// }
+    /// coordinates! { struct Room { temperature = "T" } }
+    /// use {Heater::{Off, On}, Sensed::{Cold, Warm}};
+    ///
+    /// let Room { temperature } = Room::coordinates();
+    /// let thermostat = Automaton::starting_in(Off)
+    ///     .initially(Room { temperature: 20.0 })
+    ///     .flow(Off, temperature.rate(-0.75))
+    ///     .flow(On, temperature.rate(0.75))
+    ///     .transition(from(Off).on(Cold).to(On).may(temperature.at_most(18.0)))
+    ///     .transition(from(On).on(Warm).to(Off).may(temperature.at_least(22.0)))
+    ///     .every(Cold, 1.0)
+    ///     .every(Warm, 1.0)
+    ///     .build()?;
+    /// // It is at 18 degrees after 2.67 s, and looks at 3 s.
+    /// let trajectory = thermostat.run(4.0)?;
+    /// assert_eq!(trajectory.value("T", 3.0)?, 17.75);
+    /// assert_eq!(trajectory.location(0, 2.9), Some("off"));
+    /// assert_eq!(trajectory.location(0, 3.1), Some("on"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn every(self, event: E, period: f64) -> Self {
+        self.every_from(event, period, 0.0)
+    }
+
+    /// As [`every`](Self::every), at `phase` ≥ 0, `phase` + `period`, … seconds.
+    pub fn every_from(self, event: E, period: f64, phase: f64) -> Self {
+        self.sampled(event, Sampling { period, phase })
+    }
+
+    fn sampled(mut self, event: E, sampling: Sampling) -> Self {
+        let event = number_of(event, &mut self.events);
+        self.parts.samplings.push((event, sampling));
         self
     }
 

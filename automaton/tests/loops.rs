@@ -2,7 +2,10 @@
 //! profiles, against solutions that are worked out step by step.
 
 use pleach_automaton::composition::Channel;
-use pleach_automaton::{Automaton, Composition, CompositionError, Reason, coordinates, from};
+use pleach_automaton::{
+    Automaton, BuildError, Builder, Composition, CompositionError, Reason, SimulationError,
+    coordinates, from,
+};
 use pleach_discrete::vocabulary;
 use pleach_guards::{Table, always};
 
@@ -10,14 +13,21 @@ vocabulary! {
     enum Place: Location { Running = "running" }
     enum Cue: Event { Sample = "sample" }
     enum Arrival: Event { Hear = "hear" }
+    enum Heater: Location { Off = "off", On = "on" }
+    enum Look: Event { Cold = "cold", Warm = "warm" }
 }
 coordinates! {
     struct Plant { temperature = "T", voltage = "u", time = "t" }
     struct Controller { measured = "T", integral = "I", output = "u" }
     struct Counter { count = "n" }
+    struct Room { heat = "T" }
     struct Sum { total = "x", rate = "r" }
 }
 use {Arrival::Hear, Cue::Sample, Place::Running};
+use {
+    Heater::{Off, On},
+    Look::{Cold, Warm},
+};
 
 const PERIOD: f64 = 0.01;
 const DELAY: f64 = 0.025;
@@ -101,6 +111,7 @@ fn exact(samples: usize) -> Vec<f64> {
 #[test]
 fn a_sampled_loop_with_delay_saturation_and_load_is_exact() {
     let room = heated_room();
+    assert!(room.check().findings().is_empty(), "{}", room.check());
     let trajectory = room.run(4.0).expect("it runs");
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
     let exact = exact(400);
@@ -186,5 +197,52 @@ fn samples_are_taken_at_even_intervals_from_the_phase_on() {
     for [period, phase] in [[0.0, 0.0], [-1.0, 0.0], [f64::NAN, 0.0], [1.0, -0.5], [1.0, f64::NAN]]
     {
         assert!(matches!(sampled(period, phase), Err(CompositionError::Sampler { .. })));
+    }
+}
+
+/// A thermostat that looks at guards at samples alone; it falls and rises by 0.75 a second.
+fn thermostat() -> Builder<Heater, Look, Room> {
+    let Room { heat } = Room::coordinates();
+    Automaton::starting_in(Off)
+        .initially(Room { heat: 20.0 })
+        .flow(Off, heat.rate(-0.75))
+        .flow(On, heat.rate(0.75))
+        .transition(from(Off).on(Cold).to(On).may(heat.at_most(18.0)))
+        .transition(from(On).on(Warm).to(Off).may(heat.at_least(22.0)))
+}
+
+/// When an event is taken, of all jumps of a run.
+fn times(trajectory: &pleach_automaton::Trajectory, label: &str) -> Vec<f64> {
+    let jumps = trajectory.jumps().iter().filter(|jump| jump.label == label);
+    jumps.map(|jump| jump.at.t).collect()
+}
+
+/// At 18 degrees after 2.67 s it looks at 3 s; then from 17.75 to 22.25 in 6 s, and down to 17.75 in 6 s.
+#[test]
+fn guards_are_looked_at_when_they_are_sampled() {
+    let sampled = thermostat().every(Cold, 1.0).every(Warm, 1.0).build().expect("it is sound");
+    let trajectory = sampled.run(20.5).expect("it runs");
+    assert_eq!(times(&trajectory, "cold"), [3.0, 15.0]);
+    assert_eq!(times(&trajectory, "warm"), [9.0]);
+    assert_eq!(trajectory.value("T", 9.0), Ok(22.25));
+    // At all other samples, in either location, nothing is taken.
+    assert_eq!(times(&trajectory, "missed").len(), 2 * 21 - 3);
+    // In a composition with others, too, and from a phase on.
+    let late = thermostat().every_from(Cold, 1.0, 0.5).every(Warm, 1.0).build();
+    let both = Composition::builder().add("counter", &counter()).add("room", &late.expect("sound"));
+    let both = both.every("counter.sample", 4.0).build().expect("they fit together");
+    let trajectory = both.run(3.9).expect("it runs");
+    assert_eq!(times(&trajectory, "room.cold"), [3.5]);
+    assert_eq!(trajectory.value("room.T", 3.5), Ok(20.0 - 0.75 * 3.5));
+}
+
+#[test]
+fn events_that_are_sampled_in_vain_or_twice_are_refused() {
+    let unused = Automaton::<Heater, Look, Room>::starting_in(Off).every(Cold, 1.0).build();
+    assert!(matches!(unused, Err(BuildError::SampledWithoutRow { event: "cold" })));
+    for refused in [thermostat().every(Cold, 0.0), thermostat().every(Cold, 1.0).every(Cold, 2.0)] {
+        let run = refused.build().expect("the parts are sound").run(1.0);
+        let Err(SimulationError::Composition(error)) = run else { panic!("it is no sampling") };
+        assert!(matches!(error, CompositionError::Sampler { .. }), "{error}");
     }
 }

@@ -140,8 +140,10 @@ fn signals_that_depend_on_themselves_are_refused_by_name() {
     let built = begin().signal("c", &a + 1).signal("a", &b + 1).signal("b", a.sin()).build();
     let error = built.expect_err("it is a cycle");
     assert!(error.to_string().contains("`a` → `b` → `a`"), "{error}");
-    let error = begin().signal("x", constant(1.0)).build().expect_err("x is a coordinate");
-    assert!(matches!(error, BuildError::SignalNameTaken { .. }), "{error}");
+    for formula in [constant(1.0), 2.0 * variable("x")] {
+        let error = begin().signal("x", formula).build().expect_err("x is a coordinate");
+        assert!(matches!(error, BuildError::SignalNameTaken { .. }), "{error}");
+    }
     let error = begin().signal("a", &c).build().expect_err("there is no c");
     assert!(matches!(error, BuildError::UnknownVariable { place: "a", .. }), "{error}");
 }

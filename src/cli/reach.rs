@@ -35,7 +35,7 @@ pub struct ReachArguments {
     /// Draw the sets, and runs inside, into FILE
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// The two variables to draw, where `t` is time [default: those of the configuration, or t and the
+    /// The two variables or outputs to draw, where `t` is time [default: those of the configuration, or t and the
     /// first]
     #[arg(long, value_name = "X,Y")]
     pub axes: Option<String>,
@@ -136,7 +136,9 @@ fn axes(problem: &Problem, asked: Option<&str>) -> Result<[String; 2], Failure> 
         Some(text) => text.split(',').map(|name| name.trim().to_owned()).collect(),
         None => problem.shown.clone(),
     };
-    let known = variables(problem);
+    let signals = problem.automata.iter().take(1).flat_map(|automaton| automaton.signals());
+    let mut known = variables(problem);
+    known.extend(signals.map(|(name, _)| name.to_owned()));
     let is_known = |name: &String| ["t", "time"].contains(&name.as_str()) || known.contains(name);
     if let Some(stranger) = names.iter().find(|name| !is_known(name)) {
         let known = known.join(", ");
@@ -189,8 +191,13 @@ fn verdict(problem: &Problem, solution: &Solution, seconds: f64) -> String {
             }
         }
     }
-    lines.push(format!("  {sets} sets in {} visits, {seconds:.3} s", visits(solution).count()));
+    let (sets, visits) = (counted(sets, "set"), counted(visits(solution).count(), "visit"));
+    lines.push(format!("  {sets} in {visits}, {seconds:.3} s"));
     lines.join("\n")
+}
+
+fn counted(count: usize, one: &str) -> String {
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
 }
 
 fn visits(solution: &Solution) -> impl Iterator<Item = &pleach::verify::reach::Visit> {

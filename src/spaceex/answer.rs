@@ -1,10 +1,11 @@
 //! The answer to a question.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use crate::automaton::diagram::{FlowpipePicture, Patch};
 use crate::automaton::trajectory::Sample;
-use crate::guards::Interval;
+use crate::guards::{Expression, Interval, Substitution, constant, variable};
 use crate::verify::reach::{
     Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, Settings, falsify, prove, runs,
 };
@@ -29,6 +30,8 @@ pub struct Solution {
     pub model: Model,
     /// For each alternative of the initial states.
     pub proofs: Vec<Proof>,
+    /// The names that stand for formulas of its variables.
+    pub signals: Vec<(String, Expression)>,
     /// The run that comes nearest to forbidden states, where one was looked for.
     pub nearest: Option<Box<Counterexample>>,
 }
@@ -68,7 +71,13 @@ impl Problem {
             });
             proofs = finer.collect::<Result<_, _>>()?;
         }
-        Ok(Solution { model, proofs, nearest })
+        let is_open = |name: &str| self.uncertain.iter().any(|one| one.parameter == name);
+        let numbers = automaton.parameters().filter(|(name, _)| !is_open(name));
+        let numbers = Substitution::new(numbers.map(|(name, value)| (name, constant(value))));
+        let signals = automaton.signals();
+        let signals =
+            signals.map(|(name, it)| (name.to_owned(), it.substitute(&numbers))).collect();
+        Ok(Solution { model, proofs, signals, nearest })
     }
 
     /// The run of all that were tried that comes nearest to forbidden states.
@@ -113,49 +122,30 @@ impl Solution {
         }
     }
 
-    /// The sets in the plane of two variables, or of the time, which is called `t` unless a variable
-    /// is; with runs.
+    /// The sets in the plane of two variables or signals, or of the time, which is called `t` unless a
+    /// variable is; with runs.
     ///
     /// # Errors
     ///
-    /// The name that is no variable.
+    /// A sentence about a name that is none of them, or about a signal that reads an input.
     pub fn picture(
         &self,
         title: &str,
         names: [&str; 2],
         runs: &[Run],
     ) -> Result<FlowpipePicture, String> {
-        let variables = self.model.variables();
-        let quantity = |name: &str| match variables.iter().position(|variable| variable == name) {
-            Some(place) => Ok(Some(place)),
-            None if name == "t" || name == "time" => Ok(None),
-            None => Err(format!(
-                "there is no variable `{name}`: there are {}, and time",
-                variables.join(", ")
-            )),
-        };
-        let [across, up] = [quantity(names[0])?, quantity(names[1])?];
-        let ends = |set: &Polytope, time: Interval, quantity: Option<usize>| -> Option<[f64; 2]> {
-            let side = match quantity {
-                Some(place) => *set.hull()?.get(place)?,
-                None => time,
-            };
-            Some([side.lower(), side.upper()])
-        };
+        let quantities = [self.quantity(names[0])?, self.quantity(names[1])?];
         let visits = self.proofs.iter().flat_map(|proof| &proof.enclosure.visits);
         let patches = visits.flat_map(|visit| {
             visit.segments.iter().filter_map(|segment| {
-                let across = ends(&segment.set, segment.time, across)?;
-                let up = ends(&segment.set, segment.time, up)?;
-                Some(Patch { location: visit.location, across, up })
+                let ends = |quantity: &Quantity| quantity.ends(&segment.set, segment.time);
+                let [across, up] = quantities.each_ref().map(ends);
+                Some(Patch { location: visit.location, across: across?, up: up? })
             })
         });
         let shown = |sample: &Sample| -> Option<Sample> {
-            let along = |quantity: Option<usize>| match quantity {
-                Some(place) => Some((*sample.values.get(place)?, *sample.rates.get(place)?)),
-                None => Some((sample.t, 1.0)),
-            };
-            let ((x, x_rate), (y, y_rate)) = (along(across)?, along(up)?);
+            let [across, up] = quantities.each_ref().map(|quantity| quantity.along(sample));
+            let ((x, x_rate), (y, y_rate)) = (across?, up?);
             Some(Sample { t: sample.t, values: vec![x, y], rates: vec![x_rate, y_rate] })
         };
         let phases = runs.iter().flat_map(|run| run.trajectory.intervals().take(run.lawful));
@@ -177,5 +167,67 @@ impl Solution {
             patches: patches.collect(),
             runs: phases.collect(),
         })
+    }
+
+    /// What a name stands for.
+    fn quantity(&self, name: &str) -> Result<Quantity, String> {
+        let variables = self.model.variables();
+        let signal = self.signals.iter().find(|(signal, _)| signal == name);
+        let formula = match signal {
+            Some((_, formula)) => formula.clone(),
+            None if variables.iter().any(|known| known == name) => variable(name),
+            None if name == "t" || name == "time" => return Ok(Quantity::Time),
+            None => {
+                let signals = self.signals.iter().map(|(name, _)| name);
+                let known: Vec<&str> =
+                    variables.iter().chain(signals).map(String::as_str).collect();
+                let known = known.join(", ");
+                return Err(format!("there is no variable `{name}`: there are {known}, and time"));
+            }
+        };
+        let stranger = |it: &&str| !variables.iter().any(|known| known == it);
+        if let Some(input) = formula.variables().into_iter().find(stranger) {
+            return Err(format!("`{name}` reads the input `{input}`, which sets do not hold"));
+        }
+        let rates = variables.iter().map(|name| formula.derivative(name)).collect();
+        Ok(Quantity::Formula { names: variables.to_vec(), formula, rates })
+    }
+}
+
+/// What is drawn along an axis.
+enum Quantity {
+    Time,
+    /// A formula of variables with these names, and its derivatives with respect to them.
+    Formula {
+        names: Vec<String>,
+        formula: Expression,
+        rates: Vec<Expression>,
+    },
+}
+
+impl Quantity {
+    /// Its least and its largest value in a set.
+    fn ends(&self, set: &Polytope, time: Interval) -> Option<[f64; 2]> {
+        let range = match self {
+            Quantity::Time => time,
+            Quantity::Formula { names, formula, .. } => {
+                let sides = names.iter().cloned().zip(set.hull()?);
+                formula.range(&sides.collect::<BTreeMap<String, Interval>>()).ok()?
+            }
+        };
+        Some([range.lower(), range.upper()])
+    }
+
+    /// Its value at an instant of a run, and its rate.
+    fn along(&self, sample: &Sample) -> Option<(f64, f64)> {
+        let Quantity::Formula { names, formula, rates } = self else {
+            return Some((sample.t, 1.0));
+        };
+        let named = names.iter().map(String::as_str).zip(sample.values.iter().copied());
+        let state: Vec<(&str, f64)> = named.collect();
+        let slope =
+            |(rate, change): (&Expression, &f64)| Some(rate.evaluate(&state[..]).ok()? * change);
+        let rate = rates.iter().zip(&sample.rates).map(slope).sum::<Option<f64>>()?;
+        Some((formula.evaluate(&state[..]).ok()?, rate))
     }
 }

@@ -61,7 +61,7 @@ fn to_closing_quote<'t>(
 
 impl Options {
     pub fn read(text: &str) -> Result<Self, SpaceExError> {
-        let mut options = Options { initially: (0, vec![vec![]]), ..Options::default() };
+        let mut options = Options::default();
         let mut known: Vec<(String, usize)> = Vec::new();
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..).zip(text.lines());
@@ -148,6 +148,12 @@ impl Options {
                 }
             }
         }
+        if options.initially.1.is_empty() {
+            let line = text.lines().count().max(1);
+            let problem =
+                "there is no `initially`: say where runs begin, as in `initially = \"x == 0\"`";
+            return Err(SpaceExError::Configuration { line, problem: problem.into() });
+        }
         Ok(options)
     }
 
@@ -166,8 +172,6 @@ impl Options {
                 }
             }
         }
-        let is_output = |name: &String| matches!(network.inner.get(name), Some(Bound::Formula(_)));
-        self.shown.1.retain(|name| !is_output(name));
         for name in &mut self.shown.1 {
             if let Some(Bound::Name(global)) = network.inner.get(name) {
                 name.clone_from(global);

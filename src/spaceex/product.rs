@@ -21,11 +21,6 @@ use clause::{bound, fixed};
 /// How many locations a product may have.
 const LOCATIONS: usize = 4096;
 
-/// The input that says where another one is within its bounds.
-fn share_of(input: &str) -> String {
-    format!("{input}_share")
-}
-
 type Result<T> = std::result::Result<T, SpaceExError>;
 
 /// The problem that components and configuration pose.
@@ -92,6 +87,10 @@ impl<'a> Product<'a> {
         self.variables.iter().chain(others).any(|known| known == name)
     }
 
+    fn is_input(&self, name: &str) -> bool {
+        self.shares.contains_key(name) || self.inputs.iter().any(|(input, _)| input == name)
+    }
+
     fn wrong<T>(&self, problem: String) -> Result<T> {
         Err(SpaceExError::Model { line: self.line, problem })
     }
@@ -134,8 +133,8 @@ impl<'a> Product<'a> {
                 if others.iter().all(|other| *other == first) {
                     self.inputs.push((name.clone(), first));
                 } else {
-                    let share = Interval::new(-1.0, 1.0).unwrap_or(Interval::WHOLE);
-                    self.inputs.push((share_of(name), share));
+                    let share = Interval::point(-1.0).hull(Interval::point(1.0));
+                    self.inputs.push((self.share_of(name), share));
                     self.shares.insert(name.clone(), bounds);
                 }
             }
@@ -179,13 +178,22 @@ impl<'a> Product<'a> {
         })
     }
 
-    /// What stands for inputs whose bounds are not the same in all locations.
-    fn of_shares(&self, tuple: &[usize]) -> Substitution {
-        let place = self.tuples.iter().position(|other| other == tuple).unwrap_or_default();
+    /// The input that says where another one is within its bounds. No number of the model has its name.
+    fn share_of(&self, input: &str) -> String {
+        let Network { known, outputs, .. } = self.network;
+        let mut name = format!("{input}_share");
+        while known.contains_key(&name) || outputs.contains_key(&name) {
+            name.push('_');
+        }
+        name
+    }
+
+    /// What stands in a location for inputs whose bounds are not the same in all of them.
+    fn of_shares(&self, location: usize) -> Substitution {
         Substitution::new(self.shares.iter().map(|(name, bounds)| {
-            let (middle, bounds) = (bounds[place].midpoint(), bounds[place]);
+            let (middle, bounds) = (bounds[location].midpoint(), bounds[location]);
             let radius = (bounds.upper() - middle).max(middle - bounds.lower()).next_up();
-            (name, constant(middle) + constant(radius) * variable(&share_of(name)))
+            (name, constant(middle) + constant(radius) * variable(&self.share_of(name)))
         }))
     }
 
@@ -288,13 +296,13 @@ impl<'a> Product<'a> {
         for (name, formula) in self.network.outputs.iter().filter(|(_, it)| is_one(it)) {
             builder = builder.signal(name, formula);
         }
-        for (tuple, name) in self.tuples.iter().zip(&self.names) {
-            builder = self.add_location(builder, tuple, *name, &coordinates)?;
+        for location in 0..self.tuples.len() {
+            builder = self.add_location(builder, location, &coordinates)?;
         }
         // Transitions that lead neither from the first location nor to it are no part of such an automaton.
         if !self.is_isolated(first.as_str()) {
-            for (tuple, name) in self.tuples.iter().zip(&self.names) {
-                builder = self.add_transitions(builder, tuple, *name, &coordinates)?;
+            for source in 0..self.tuples.len() {
+                builder = self.add_transitions(builder, source, &coordinates)?;
             }
         }
         builder

@@ -106,7 +106,18 @@ impl<'a> Draft<'a> {
         })
     }
 
-    /// Whether all parts fit together.
+    /// Whether no name stands for two things.
+    ///
+    /// # Errors
+    ///
+    /// The first parameter or signal with the name of another number.
+    pub(super) fn check_names(&self) -> Result<(), BuildError> {
+        let names = self.parts.known.as_deref().unwrap_or_default();
+        self.check_parameters(names)?;
+        self.check_signals(names)
+    }
+
+    /// Whether all parts fit together, with formulas in the place of signals.
     ///
     /// # Errors
     ///
@@ -121,8 +132,6 @@ impl<'a> Draft<'a> {
         let Parts { known, observed, parameters, .. } = self.parts;
         if let Some(names) = known {
             let is_parameter = |name: &str| parameters.iter().any(|(known, _)| known == name);
-            self.check_parameters(names)?;
-            self.check_signals(names)?;
             self.check_variables(&|name| names.contains(&name) || is_parameter(name))?;
             self.check_initial_state(names)?;
             if let Some(state) = self.initial_state {
@@ -187,6 +196,10 @@ impl<'a> Draft<'a> {
                 let (guard, event) = (guard.name().to_owned(), self.events[*event]);
                 return Err(BuildError::GuardWithoutRow { guard, event });
             }
+        }
+        let is_row = |event: usize| self.parts.rows.iter().any(|row| row.event == event);
+        if let Some((event, _)) = self.parts.samplings.iter().find(|(event, _)| !is_row(*event)) {
+            return Err(BuildError::SampledWithoutRow { event: self.events[*event] });
         }
         once(self.parts.conditions.iter().map(|(event, _)| *event), "guard", &self.events)?;
         once(self.parts.described(), "flow", &self.locations)?;

@@ -48,6 +48,12 @@ pub enum BuildError {
         /// The event.
         event: &'static str,
     },
+    /// An event is to be taken at samples, and is in no row.
+    #[error("event `{event}` is sampled, and is in no row of the table")]
+    SampledWithoutRow {
+        /// The event.
+        event: &'static str,
+    },
     /// An event has two guards, or a location two flows or two invariants.
     #[error("`{place}` is given its {part} twice: keep one")]
     GivenTwice {

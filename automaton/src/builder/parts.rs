@@ -6,6 +6,7 @@ use std::sync::Arc;
 use pleach_discrete::Row;
 use pleach_guards::{Guard, Predicate};
 
+use crate::composition::Sampling;
 use crate::flow::Rate;
 use crate::law::Command;
 use crate::reset::Assignment;
@@ -34,6 +35,8 @@ pub(super) struct Parts {
     pub(super) parameters: Vec<(String, f64)>,
     /// Names that stand for formulas, with these.
     pub(super) signals: Vec<Signal>,
+    /// The events that are taken at samples.
+    pub(super) samplings: Vec<(usize, Sampling)>,
     /// The names of all variables, where the type of the state has them.
     pub(super) known: Option<Vec<&'static str>>,
     /// The names of all variables and propositions, where the state is not its coordinates.

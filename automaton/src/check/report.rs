@@ -305,7 +305,10 @@ impl fmt::Display for Report {
         };
         let [errors, warnings, notes] =
             [Severity::Error, Severity::Warning, Severity::Note].map(count);
-        let excluded = self.exclusions.len();
-        write!(formatter, "{errors}, {warnings}, {notes}; {excluded} faults excluded by proof")
+        let excluded = match self.exclusions.len() {
+            1 => "1 fault".to_owned(),
+            number => format!("{number} faults"),
+        };
+        write!(formatter, "{errors}, {warnings}, {notes}; {excluded} excluded by proof")
     }
 }

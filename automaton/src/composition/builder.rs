@@ -11,7 +11,7 @@ use pleach_guards::{EvaluationError, Valuation};
 pub use error::CompositionError;
 
 use super::blueprint::{Blueprint, Wiring};
-use super::sampler::Sampler;
+use super::sampler::{Sampler, Sampling};
 use super::{Accumulation, Channel, Component, Composition};
 use crate::automaton::Automaton;
 use crate::check::model::Model;
@@ -44,6 +44,10 @@ struct Part {
     initial: Vec<f64>,
     /// Names of formulas of the coordinates, with these.
     signals: Vec<Signal>,
+    /// The events that are taken at samples.
+    samplings: Vec<(&'static str, Sampling)>,
+    /// Whether it is the clock of such an event.
+    is_clock: bool,
     /// Compiles it anew, with formulas in the place of coordinates.
     compile: Arc<Compile>,
     renamed: Vec<(String, String)>,
@@ -85,13 +89,14 @@ impl CompositionBuilder {
         let signals = automaton.signals();
         let signals = signals.map(|(name, it)| (name.to_owned(), it.substitute(&numbers)));
         let signals = signals.collect();
+        let samplings = automaton.samplings().collect();
         let automaton = automaton.clone();
         let compile = Arc::new(move |wiring: &Wiring| {
             let blueprint = automaton.blueprint(wiring)?;
             let model = Model::of(&automaton.outline(), wiring);
             Ok((Arc::new(blueprint), Arc::new(model)))
         });
-        self.add_part(name, compile, signals, &state)
+        self.add_part(name, compile, signals, samplings, &state)
     }
 
     fn add_part(
@@ -99,6 +104,7 @@ impl CompositionBuilder {
         name: &str,
         compile: Arc<Compile>,
         signals: Vec<Signal>,
+        samplings: Vec<(&'static str, Sampling)>,
         state: &dyn Valuation,
     ) -> Self {
         let initial = |compiled: Compiled| -> Result<(Compiled, Vec<f64>), EvaluationError> {
@@ -123,6 +129,8 @@ impl CompositionBuilder {
                 model,
                 initial,
                 signals,
+                samplings,
+                is_clock: false,
                 compile,
                 renamed: Vec::new(),
                 accumulation: None,
@@ -201,14 +209,17 @@ impl CompositionBuilder {
 
     /// The event of a component, written `component.event`, is taken at 0, `period`, 2 `period`, …: a
     /// sampled controller needs no clock of its own. Its transitions with the event say what is done
-    /// then and not when, as `may(always())`; the clock becomes a component after all others.
+    /// then and not when, as `may(always())`. Where none of them can be taken, the sample passes. The
+    /// clock becomes a component after all others. An automaton can say the same of
+    /// [its events](crate::Builder::every).
     pub fn every(self, event: &str, period: f64) -> Self {
         self.every_from(event, period, 0.0)
     }
 
     /// As [`every`](Self::every), at `phase` ≥ 0, `phase` + `period`, … seconds.
     pub fn every_from(mut self, event: &str, period: f64, phase: f64) -> Self {
-        self.samplers.push(Sampler { event: event.to_owned(), period, phase });
+        let sampling = Sampling { period, phase };
+        self.samplers.push(Sampler { event: event.to_owned(), sampling, misses: false });
         self
     }
 

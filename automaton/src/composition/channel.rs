@@ -238,7 +238,10 @@ impl Channel {
         let automaton = Machine::of(self, send, arrive)
             .build()
             .map_err(|_| refuse("a coordinate is carried twice"))?;
-        let mut builder = builder.add(&self.name, &automaton).label(send).label(arrive);
+        let mut builder = builder.add(&self.name, &automaton).label(send);
+        if !self.inputs.is_empty() {
+            builder = builder.label(arrive);
+        }
         for (number, Content { output, input, initial }) in self.contents.iter().enumerate() {
             let read = if initial.is_some() { held(number) } else { content(number, 0) };
             builder = builder

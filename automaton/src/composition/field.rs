@@ -1,6 +1,6 @@
 //! The vector field of a group: the flows of its components in their locations, as one.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
@@ -31,7 +31,7 @@ pub(super) enum Row {
 
 /// The flow of a group in its locations, from a state on.
 pub(super) struct Field<'a> {
-    /// Those that do not solve their flow themselves, each with its mode.
+    /// Those that neither move along lines alone nor solve their flow themselves, each with its mode.
     moving: Vec<(&'a Component, &'a Mode)>,
     solved: Vec<(&'a Component, &'a Solution)>,
     /// The rates of all variables, if one component says how all of them move and none has a kink to hold.
@@ -39,6 +39,10 @@ pub(super) struct Field<'a> {
     /// By variable of the group.
     pub(super) rows: Vec<Row>,
     pub(super) start: Vec<f64>,
+    /// See [`integrated`](Self::integrated).
+    integrated: OnceCell<Box<[usize]>>,
+    /// A state of all variables and their rates, where not all are integrated.
+    completed: RefCell<[Vec<f64>; 2]>,
     /// Room for the coordinates of a component and their rates, and for a state.
     scratch: RefCell<[Vec<f64>; 3]>,
     /// By moving component: the places of its tape, once they are needed.
@@ -78,12 +82,16 @@ impl<'a> Field<'a> {
                     component.owned_places().for_each(|place| rows[place] = Row::Solved);
                     solved.push((component, &**advance));
                 }
-                ModeMotion::Rates(rates) if rates.is_empty() => {}
                 ModeMotion::Rates(rates) => {
+                    let mut is_curved = false;
                     for rate in rates {
-                        rows[component.places[rate.coordinate]] = rate.row();
+                        let row = rate.row();
+                        is_curved |= row == Row::Curved;
+                        rows[component.places[rate.coordinate]] = row;
                     }
-                    moving.push((component, mode));
+                    if is_curved {
+                        moving.push((component, mode));
+                    }
                 }
                 ModeMotion::Field(_) => {
                     component.owned_places().for_each(|place| rows[place] = Row::Curved);
@@ -106,6 +114,8 @@ impl<'a> Field<'a> {
             rows,
             start,
             hold,
+            integrated: OnceCell::new(),
+            completed: RefCell::default(),
             places: RefCell::default(),
             scratch: RefCell::default(),
             ranges: RefCell::default(),
@@ -115,6 +125,24 @@ impl<'a> Field<'a> {
     /// Whether all variables move along lines, or are solved by themselves.
     pub(super) fn is_straight(&self) -> bool {
         !self.rows.contains(&Row::Curved)
+    }
+
+    /// The variables that an integrator follows: those with curved rows, and those on lines that the
+    /// components of these may read. Rates read others as they are at the start.
+    pub(super) fn integrated(&self) -> &[usize] {
+        self.integrated.get_or_init(|| {
+            let moves = |place: usize| !matches!(self.rows[place], Row::Line(0.0) | Row::Solved);
+            let mut belongs = vec![false; self.rows.len()];
+            for (component, _) in &self.moving {
+                component.places.iter().for_each(|&place| belongs[place] |= moves(place));
+            }
+            (0..belongs.len()).filter(|&place| belongs[place]).collect()
+        })
+    }
+
+    /// Of a state of all variables those that are integrated.
+    pub(super) fn integrated_of(&self, state: &[f64]) -> Vec<f64> {
+        self.integrated().iter().map(|&place| state[place]).collect()
     }
 
     /// Whether a component solves its flow itself.
@@ -155,7 +183,7 @@ impl<'a> Field<'a> {
 
     /// What the rates of the group are if all are linear: their constants, and the coefficients.
     fn entries(&self) -> Option<(Vec<f64>, Vec<Entry>)> {
-        let (mut offsets, mut entries) = (vec![0.0; self.rows.len()], Vec::new());
+        let (mut offsets, mut entries) = (self.rates_of_lines(), Vec::new());
         for (component, mode) in &self.moving {
             let ModeMotion::Rates(rates) = &mode.motion else { return None };
             for rate in rates {
@@ -173,6 +201,39 @@ impl<'a> Field<'a> {
             }
         }
         Some((offsets, entries))
+    }
+
+    /// The rates of what moves along lines, and 0 for others.
+    fn rates_of_lines(&self) -> Vec<f64> {
+        let rate = |row: &Row| if let Row::Line(rate) = row { *rate } else { 0.0 };
+        self.rows.iter().map(rate).collect()
+    }
+
+    /// The rates of all variables at the start; 0 of what is solved by itself.
+    pub(super) fn first_rates(&self) -> Vec<f64> {
+        let mut rates = self.rates_of_lines();
+        self.curve(0.0, &self.start, &mut rates);
+        rates
+    }
+
+    /// Writes the rates of what curves. What is solved by itself is seen where it is at `time`.
+    fn curve(&self, time: f64, state: &[f64], rates: &mut [f64]) {
+        if let Some(tape) = self.whole {
+            let mut tapes = self.places.borrow_mut();
+            if tapes.is_empty() {
+                tapes.push(tape.places());
+            }
+            return tape.evaluate(state, &mut tapes[0], rates);
+        }
+        if self.solved.is_empty() {
+            return self.add_rates(state, rates);
+        }
+        let mut overlaid = std::mem::take(&mut self.scratch.borrow_mut()[2]);
+        overlaid.clear();
+        overlaid.extend_from_slice(state);
+        self.overlay(time, &mut overlaid);
+        self.add_rates(&overlaid, rates);
+        self.scratch.borrow_mut()[2] = overlaid;
     }
 
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
@@ -333,25 +394,26 @@ impl<'a> Field<'a> {
 }
 
 impl VectorField for Field<'_> {
-    /// What is solved by itself has rate 0 here, and others see it where it is at `time`.
+    /// The rates of the variables that are integrated.
     fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
-        if let Some(tape) = self.whole {
-            let mut tapes = self.places.borrow_mut();
-            if tapes.is_empty() {
-                tapes.push(tape.places());
+        let integrated = self.integrated();
+        if integrated.len() == self.rows.len() {
+            let lines = if self.whole.is_some() { &[] } else { &self.rows[..] };
+            for (rate, row) in rates.iter_mut().zip(lines) {
+                if let Row::Line(line) = row {
+                    *rate = *line;
+                }
             }
-            return tape.evaluate(state, &mut tapes[0], rates);
+            return self.curve(time, state, rates);
         }
-        rates.fill(0.0);
-        if self.solved.is_empty() {
-            return self.add_rates(state, rates);
+        let [all, changes] = &mut *self.completed.borrow_mut();
+        if all.is_empty() {
+            all.clone_from(&self.start);
+            *changes = self.rates_of_lines();
         }
-        let mut overlaid = std::mem::take(&mut self.scratch.borrow_mut()[2]);
-        overlaid.clear();
-        overlaid.extend_from_slice(state);
-        self.overlay(time, &mut overlaid);
-        self.add_rates(&overlaid, rates);
-        self.scratch.borrow_mut()[2] = overlaid;
+        integrated.iter().zip(state).for_each(|(&place, value)| all[place] = *value);
+        self.curve(time, all, changes);
+        rates.iter_mut().zip(integrated).for_each(|(rate, &place)| *rate = changes[place]);
     }
 }
 
@@ -378,10 +440,8 @@ impl Composition {
     pub(super) fn mover(&self, locations: &[usize], values: &[f64]) -> Option<String> {
         self.groups.iter().find_map(|group| {
             let start: Vec<f64> = group.slots.iter().map(|&slot| values[slot]).collect();
-            let field = Field::of(self, group, locations, start.clone());
-            let mut rates = vec![0.0; start.len()];
-            field.rates(0.0, &start, &mut rates);
-            let moving = rates.iter().position(|rate| *rate != 0.0);
+            let field = Field::of(self, group, locations, start);
+            let moving = field.first_rates().iter().position(|rate| *rate != 0.0);
             let variable = moving.map(|place| self.variables[group.slots[place]].clone());
             variable.or_else(|| field.solved.first().map(|(component, _)| component.name.clone()))
         })

@@ -225,6 +225,7 @@ impl Component {
     ) -> Result<(), EvaluationError> {
         match change {
             Change::Assignments(assignments) => {
+                changes.reserve(assignments.len());
                 for (coordinate, assigned) in assignments {
                     let (new, source) = match assigned {
                         Assigned::Value(value) => {

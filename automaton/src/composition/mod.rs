@@ -107,6 +107,7 @@ pub use simulation::{Failure, Halt, Move, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
 use group::Group;
+pub(crate) use sampler::Sampling;
 
 use crate::check::model::Model;
 use crate::signals::Signal;

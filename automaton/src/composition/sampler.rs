@@ -10,14 +10,24 @@ use crate::named::{Name, Record, kept};
 pub(super) struct Sampler {
     /// `component.event`
     pub(super) event: String,
+    pub(super) sampling: Sampling,
+    /// Whether the event may be impossible at a sample, which then passes.
+    pub(super) misses: bool,
+}
+
+/// At which instants something is sampled.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sampling {
     /// In seconds.
-    pub(super) period: f64,
-    /// When it is taken first.
-    pub(super) phase: f64,
+    pub(crate) period: f64,
+    /// When it is sampled first.
+    pub(crate) phase: f64,
 }
 
 /// The time since the last sample.
 const CLOCK: &str = "τ";
+/// A sample at which the event cannot be taken.
+const MISSED: &str = "missed";
 
 impl Sampler {
     /// The clock as a component, joined by `label`.
@@ -26,30 +36,32 @@ impl Sampler {
         builder: CompositionBuilder,
         label: &str,
     ) -> Result<CompositionBuilder, CompositionError> {
-        let Sampler { event, period, phase } = self;
+        let Sampler { event, sampling, misses } = self;
+        let Sampling { period, phase } = *sampling;
         let refuse = |reason| CompositionError::Sampler { event: event.clone(), reason };
-        if !(period.is_finite() && *period > 0.0) {
+        if !(period.is_finite() && period > 0.0) {
             return Err(refuse("its period has to be a finite time above 0"));
         }
-        if !(phase.is_finite() && *phase >= 0.0) {
+        if !(phase.is_finite() && phase >= 0.0) {
             return Err(refuse("its phase has to be a finite time of at least 0"));
         }
         let (ticking, sample) = (Name::new("ticking"), Name::new(label));
         let clock = Coordinate::<Record>::new(kept(CLOCK));
         let state =
             Record::new([(CLOCK, period - phase)]).map_err(|_| refuse("it has two clocks"))?;
-        let automaton = Automaton::<Name, Name, Record>::starting_in(ticking)
+        let tick = |event: Name| {
+            let due = from(ticking).on(event).to(ticking).must(clock.at_least(period));
+            due.then(clock.becomes(0.0))
+        };
+        let mut automaton = Automaton::<Name, Name, Record>::starting_in(ticking)
             .initially(state)
             .flow(ticking, clock.rate(1.0))
-            .transition(
-                from(ticking)
-                    .on(sample)
-                    .to(ticking)
-                    .must(clock.at_least(*period))
-                    .then(clock.becomes(0.0)),
-            )
-            .build()
-            .map_err(|_| refuse("its event cannot be taken by a clock"))?;
+            .transition(tick(sample));
+        if *misses {
+            automaton = automaton.transition(tick(Name::new(MISSED)).priority(1));
+        }
+        let automaton =
+            automaton.build().map_err(|_| refuse("its event cannot be taken by a clock"))?;
         Ok(builder.add(&format!("clock of {event}"), &automaton).label(label))
     }
 }

@@ -236,14 +236,16 @@ impl System for Simulation<'_> {
     }
 
     fn jump(&mut self, round: &mut Round<'_, Taken>) -> Result<(), Halt> {
-        let awake = self.awake.clone();
+        let awake = std::mem::take(&mut self.awake);
         let mut jumped = self.take_round(round, &awake, Readiness::Forced)?;
         if !jumped {
             jumped = self.leave(round, &awake)?;
         }
         if !jumped && self.now.seconds() >= self.horizon {
-            self.plan_last();
-        } else if !jumped {
+            self.plan_last(awake);
+            return Ok(());
+        }
+        if !jumped {
             let mut stuck = BTreeSet::new();
             for &group in &awake {
                 self.plan(group)?;
@@ -255,9 +257,9 @@ impl System for Simulation<'_> {
             if !stuck.is_empty() {
                 jumped = self.take_round(round, &stuck, Readiness::Possible)?;
             }
-            if !jumped {
-                self.awake.clear();
-            }
+        }
+        if jumped {
+            self.awake = awake;
         }
         Ok(())
     }

@@ -48,6 +48,8 @@ pub(super) struct Solver<'a> {
     /// Where the solution touches a jump of its rates, for all that is known.
     grazes: Vec<Doubt>,
     enclosures: Vec<Enclosure>,
+    /// The span of the last piece that they are of.
+    enclosed: Option<[f64; 2]>,
     /// Whether the integrator itself solves for all variables.
     is_complete: bool,
     /// What steps must not pass over unseen, where rates are such that they could.
@@ -79,7 +81,8 @@ impl<'a> Solver<'a> {
             }
             None => {
                 field.choose_sides(0.0, &field.start);
-                let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
+                let start = field.integrated_of(&field.start);
+                let integrator = Integrator::new(field, 0.0, &start, settings.tolerances());
                 Method::Steps(Box::new(integrator.with_method(settings.method)))
             }
         };
@@ -97,6 +100,7 @@ impl<'a> Solver<'a> {
             kink: None,
             grazes: Vec::new(),
             enclosures: Vec::new(),
+            enclosed: None,
             is_complete,
             seen_to,
         })
@@ -173,20 +177,25 @@ impl<'a> Solver<'a> {
     ///
     /// As for [`piece_at`](Self::piece_at).
     pub(super) fn state_at(&mut self, time: Moment) -> Result<Vec<f64>, String> {
-        let mut state = self.field.start.clone();
-        if !matches!(self.method, Method::Lines) {
-            let limit = time.seconds();
-            self.piece_at(limit, limit)?.state_at(limit, &mut state);
+        let (field, is_complete) = (self.field, self.is_complete);
+        let (mut state, at) = (field.start.clone(), time.seconds());
+        let piece = if self.is_straight() { None } else { Some(self.piece_at(at, at)?) };
+        if let Some(piece) = piece.filter(|_| is_complete) {
+            piece.state_at(at, &mut state);
+            return Ok(state);
         }
-        for (place, row) in self.field.rows.iter().enumerate() {
-            if let Row::Line(rate) = *row {
-                let first = Moment::from(self.field.start[place]);
-                let moved = first + Moment::from(rate) * time;
+        let at = piece.map_or(at, |piece| at.clamp(piece.start(), piece.end()));
+        for (place, (row, value)) in field.rows.iter().zip(&mut state).enumerate() {
+            match (*row, piece) {
                 // Over infinite rates nothing is exact.
-                state[place] = if rate == 0.0 { first.seconds() } else { moved.seconds() };
+                (Row::Line(0.0), _) | (Row::Curved | Row::Solved, None) => {}
+                (Row::Line(rate), _) => {
+                    *value = (Moment::from(*value) + Moment::from(rate) * time).seconds();
+                }
+                (Row::Curved | Row::Solved, Some(piece)) => *value = piece.value(place, at),
             }
         }
-        self.field.overlay(time.seconds(), &mut state);
+        field.overlay(time.seconds(), &mut state);
         Ok(state)
     }
 
@@ -200,6 +209,7 @@ impl<'a> Solver<'a> {
         if self.overflows(&piece) {
             return Err("the state grows beyond the largest number".to_owned());
         }
+        self.enclosed = None;
         let bounded = self.check_rates(&piece).and_then(|()| self.check_radicands(&piece));
         let end = bounded.as_ref().err().map_or(piece.end(), |(singularity, _)| *singularity);
         let progress = self.check_progress(&piece);
@@ -220,9 +230,7 @@ impl<'a> Solver<'a> {
         let start = self.reached;
         let curved = match &mut self.method {
             Method::Lines => Piece::new(start, limit, 0.0, 1.0),
-            Method::Linear(flow, _) => {
-                flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
-            }
+            Method::Linear(flow, _) => flow.piece_up_to(start, limit).within(start, limit),
             Method::Steps(integrator) => {
                 let limit =
                     self.field.next_kink(self.settled).map_or(limit, |kink| limit.min(kink));
@@ -332,6 +340,7 @@ impl<'a> Solver<'a> {
         let mut state = self.field.start.clone();
         piece.state_at(time, &mut state);
         let kink = self.field.choose_sides(time, &state)?;
+        let state = self.field.integrated_of(&state);
         self.integrator()?.restart(time, &state);
         Some(kink)
     }
@@ -373,17 +382,15 @@ impl<'a> Solver<'a> {
         let (origin, scale) = (curved.origin(), curved.scale());
         let mut piece = Piece::new(curved.start(), curved.end(), origin, scale)
             .with_room(self.field.rows.len(), curved.degree().max(1) + 1);
+        let variables = match &self.method {
+            Method::Lines => &[],
+            Method::Linear(_, variables) => &**variables,
+            Method::Steps(_) => self.field.integrated(),
+        };
         let mut next = 0;
         for (place, row) in self.field.rows.iter().enumerate() {
-            let own = match &self.method {
-                Method::Lines => None,
-                Method::Linear(_, variables) => {
-                    let own = (variables.get(next) == Some(&place)).then_some(next);
-                    next += usize::from(own.is_some());
-                    own
-                }
-                Method::Steps(_) => Some(place),
-            };
+            let own = (variables.get(next) == Some(&place)).then_some(next);
+            next += usize::from(own.is_some());
             match (row, own) {
                 (Row::Curved, Some(own)) => {
                     piece.push(curved.coefficients(own).iter().copied(), curved.error(own));
@@ -459,7 +466,10 @@ impl<'a> Solver<'a> {
         piece: &Piece,
         [from, to]: [f64; 2],
     ) -> Interval {
-        piece.enclose(from, to, &mut self.enclosures);
+        if self.enclosed != Some([from, to]) {
+            piece.enclose(from, to, &mut self.enclosures);
+            self.enclosed = Some([from, to]);
+        }
         let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
         let margins = condition.comparisons().iter();
         let ranges = margins.map(|it| it.margin(&self.enclosures, &component.places, half).range);

@@ -7,9 +7,9 @@ use pleach_automaton::{
 };
 use pleach_discrete::vocabulary;
 
+use crate::measure::{fastest, ratio};
 use crate::report::Report;
 use crate::solvers::{MU, stiff_van_der_pol, tolerance_for};
-use crate::{fastest, ratio};
 
 vocabulary! {
     pub enum Place: Location { Here = "here" }

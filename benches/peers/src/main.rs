@@ -12,7 +12,7 @@
 //! cargo run --release --manifest-path benches/peers/Cargo.toml -- ways
 //! ```
 //!
-//! This prints the table of shortest ways alone.
+//! This prints the table of shortest ways alone, and `loops` that of events and sampled control.
 //!
 //! ```sh
 //! cargo run --release --manifest-path benches/peers/Cargo.toml -- one orbit run 1e-9 100
@@ -21,9 +21,13 @@
 //!
 //! These do one thing as often as they are told, for a profiler: a problem as a `function`, as
 //! `formulas`, as the `run` of an automaton or by the `peer`, at a relative tolerance; or runs with
-//! many events.
+//! many events, or with as many as a row of the table of loops says.
+//!
+//! Times are those of the processor. SciPy is part of the comparison where `python3` has it.
 
 mod events;
+mod loops;
+mod measure;
 mod problems;
 mod report;
 mod solvers;
@@ -32,8 +36,9 @@ mod ways;
 use std::hint::black_box;
 use std::io;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use measure::{fastest_in_turn, ratio};
 use problems::{Problem, chain, coupled_van_der_pol, lorenz, orbit};
 use report::Report;
 use solvers::tolerance_for;
@@ -41,16 +46,19 @@ use solvers::tolerance_for;
 fn main() -> io::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    if let ["ways"] = arguments[..] {
-        let mut report = Report::default();
-        ways::all(&mut report);
-        print!("{report}");
-        return Ok(());
-    }
     if let ["one", rest @ ..] = &arguments[..] {
         return one(rest).ok_or_else(|| io::Error::other("one NAME [WAY] NUMBER TIMES"));
     }
     let mut report = Report::default();
+    if let [one @ ("ways" | "loops")] = arguments[..] {
+        if one == "ways" {
+            ways::all(&mut report)
+        } else {
+            loops::all(&mut report)
+        }
+        print!("{report}");
+        return Ok(());
+    }
     report.table(&[
         "integration at equal error",
         "error",
@@ -64,6 +72,7 @@ fn main() -> io::Result<()> {
     compare(&chain(), &mut report);
     compare(&orbit(), &mut report);
     events::all(&mut report);
+    loops::all(&mut report);
     ways::all(&mut report);
     print!("{report}");
     arguments.first().map_or(Ok(()), |document| report.put_into(Path::new(document)))
@@ -79,7 +88,10 @@ fn one(arguments: &[&str]) -> Option<()> {
         }
         ["chain", way, relative, _] => chain().repeat(way, relative.parse().ok()?, times),
         ["orbit", way, relative, _] => orbit().repeat(way, relative.parse().ok()?, times),
-        [name, number, _] => events::repeat(name, number.parse().ok()?, times),
+        [name, number, _] => {
+            let number = number.parse().ok()?;
+            events::repeat(name, number, times).or_else(|| loops::repeat(name, number, times))
+        }
         _ => None,
     }
 }
@@ -124,32 +136,3 @@ fn compare<const N: usize>(problem: &Problem<N>, report: &mut Report) {
 /// How often everything that is compared is run, one after the other, so that what else runs on the machine
 /// meets all of it.
 const ROUNDS: usize = 100;
-
-/// The shortest of several times of each of some things, which take turns.
-fn fastest_in_turn<T>(
-    rounds: usize,
-    count: usize,
-    mut run: impl FnMut(usize) -> T,
-) -> Vec<Duration> {
-    let mut shortest = vec![Duration::MAX; count];
-    for _ in 0..rounds {
-        for (number, shortest) in shortest.iter_mut().enumerate() {
-            *shortest = (*shortest).min(fastest(4, || run(number)));
-        }
-    }
-    shortest
-}
-
-/// The shortest of several times.
-fn fastest<T>(times: usize, mut run: impl FnMut() -> T) -> Duration {
-    let time = |_| {
-        let start = Instant::now();
-        black_box(run());
-        start.elapsed()
-    };
-    (0..times).map(time).min().unwrap_or_default()
-}
-
-fn ratio(one: Duration, other: Duration) -> f64 {
-    one.as_secs_f64() / other.as_secs_f64()
-}

@@ -7,13 +7,14 @@
 
 use std::collections::BTreeSet;
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::Vec2;
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, Workspace};
 use polyanya::{Mesh, PolyanyaFile, Triangulation};
 
+use crate::measure::{ratio, timed};
 use crate::report::Report;
 
 /// Ways in each measurement.
@@ -181,10 +182,7 @@ fn compare(map: &Map, report: &mut Report) {
         // Where `polyanya` finds no way there is no error to tell.
         format!("{:.0e}", errors.filter(|error| error.is_finite()).fold(0.0, f64::max))
     };
-    let ratios = own
-        .iter()
-        .zip(peer)
-        .map(|(own, peer)| format!("{:.1}", own.as_secs_f64() / peer.as_secs_f64()));
+    let ratios = own.into_iter().zip(peer).map(|(own, peer)| format!("{:.1}", ratio(own, peer)));
     report.row(
         [map.name.clone(), map.workspace.edges().count().to_string()]
             .into_iter()
@@ -195,12 +193,6 @@ fn compare(map: &Map, report: &mut Report) {
 
 fn shorter(one: [Duration; 3], other: [Duration; 3]) -> [Duration; 3] {
     std::array::from_fn(|at| one[at].min(other[at]))
-}
-
-fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let begin = Instant::now();
-    let result = work();
-    (result, begin.elapsed())
 }
 
 /// Which vertices of a map see each other, by trying every pair against every edge.

@@ -182,7 +182,7 @@ impl Curve for LinearFlow {
     }
 
     fn piece(&self, time: f64) -> Option<Piece> {
-        Some(self.piece_from(time))
+        Some(self.piece_up_to(time, self.duration))
     }
 }
 

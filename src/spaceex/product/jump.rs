@@ -11,14 +11,14 @@ use crate::spaceex::document::Transition;
 use crate::spaceex::network::{Assigned, Bound, Instance};
 
 impl Product<'_> {
-    /// The transitions from one tuple: one by one, and together by labels.
+    /// The transitions from one location: one by one, and together by labels.
     pub(super) fn add_transitions(
         &self,
         mut builder: Builder<Name, Name, Record>,
-        tuple: &[usize],
-        source: Name,
+        source: usize,
         coordinates: &BTreeMap<String, Coordinate<Record>>,
     ) -> Result<Builder<Name, Name, Record>> {
+        let tuple = &self.tuples[source];
         for (at, instance) in self.network.instances.iter().enumerate() {
             for transition in leaving(instance, tuple[at]) {
                 let label = self.label(instance, transition);
@@ -44,14 +44,8 @@ impl Product<'_> {
                         .collect();
                 }
                 for group in together {
-                    builder = self.add_joint(
-                        builder,
-                        tuple,
-                        source,
-                        &group,
-                        label.as_deref(),
-                        coordinates,
-                    )?;
+                    let label = label.as_deref();
+                    builder = self.add_joint(builder, source, &group, label, coordinates)?;
                 }
             }
         }
@@ -75,14 +69,13 @@ impl Product<'_> {
     fn add_joint(
         &self,
         builder: Builder<Name, Name, Record>,
-        tuple: &[usize],
-        source: Name,
+        source: usize,
         group: &[(usize, &Transition)],
         label: Option<&str>,
         coordinates: &BTreeMap<String, Coordinate<Record>>,
     ) -> Result<Builder<Name, Name, Record>> {
-        let mut target = tuple.to_vec();
-        let shares = self.of_shares(tuple);
+        let mut target = self.tuples[source].clone();
+        let shares = self.of_shares(source);
         let (mut guard, mut assignments, mut is_urgent) = (Vec::new(), Vec::new(), false);
         for (at, transition) in group {
             let instance = &self.network.instances[*at];
@@ -111,10 +104,9 @@ impl Product<'_> {
                 });
             }
         }
-        let target = self.tuples.iter().position(|other| *other == target).map(|at| self.names[at]);
-        let target = target.unwrap_or(source);
+        let target = self.tuples.iter().position(|other| *other == target).unwrap_or(source);
         let event = Name::new(label.unwrap_or("jump"));
-        let arrow = from(source).on(event).to(target);
+        let arrow = from(self.names[source]).on(event).to(self.names[target]);
         let guard = Predicate::all(guard).substitute(&shares);
         let edge = if is_urgent { arrow.must(guard) } else { arrow.may(guard) };
         Ok(builder.transition(edge.then(assignments)))

@@ -19,14 +19,13 @@ impl Product<'_> {
     pub(super) fn add_location(
         &self,
         mut builder: Builder<Name, Name, Record>,
-        tuple: &[usize],
-        name: Name,
+        location: usize,
         coordinates: &BTreeMap<String, Coordinate<Record>>,
     ) -> Result<Builder<Name, Name, Record>> {
         let (mut rates, mut invariant): (Option<BTreeMap<String, Expression>>, Vec<Predicate>) =
             (Some(BTreeMap::new()), Vec::new());
-        let mut line = self.line;
-        for (instance, place) in self.network.instances.iter().zip(tuple) {
+        let (name, mut line) = (self.names[location], self.line);
+        for (instance, place) in self.network.instances.iter().zip(&self.tuples[location]) {
             let place = &instance.component.locations[*place];
             line = place.line;
             match (instance.rates(place)?, &mut rates) {
@@ -52,7 +51,7 @@ impl Product<'_> {
                 }
             }
         }
-        let shares = self.of_shares(tuple);
+        let shares = self.of_shares(location);
         let mut listed: Vec<Rate<Record>> = Vec::new();
         for (variable, coordinate) in coordinates {
             match &rates {
@@ -81,10 +80,7 @@ impl Product<'_> {
     /// A bound on an input alone.
     pub(super) fn is_input_bound(&self, clause: &Clause) -> bool {
         let Clause::Compare { left, right, .. } = clause else { return false };
-        let is_input = |side: &Side| {
-            let is_known = |name: &str| self.inputs.iter().any(|(input, _)| input == name);
-            side.name().is_some_and(|name| is_known(name) || self.shares.contains_key(name))
-        };
+        let is_input = |side: &Side| side.name().is_some_and(|name| self.is_input(name));
         let is_number =
             |side: &Side| matches!(side, Side::Formula(formula) if formula.evaluate(&()).is_ok());
         is_input(left) && is_number(right) || is_input(right) && is_number(left)

@@ -222,7 +222,9 @@ impl Product<'_> {
     /// The variables to be shown.
     pub(super) fn shown(&self, options: &Options) -> Result<Vec<String>> {
         let (line, shown) = &options.shown;
-        let is_known = |name: &&String| *name == "t" || self.is_number(name);
+        let outputs = &self.network.outputs;
+        let is_known =
+            |name: &&String| *name == "t" || self.is_number(name) || outputs.contains_key(*name);
         match shown.iter().find(|name| !is_known(name)) {
             Some(stranger) => Err(SpaceExError::Configuration {
                 line: *line,
@@ -245,6 +247,11 @@ impl Product<'_> {
                 states.extend(predicate(clause).map_err(wrong)?);
             }
             let states = Predicate::all(states);
+            if let Some(input) = states.variables().into_iter().find(|name| self.is_input(name)) {
+                return Err(wrong(format!(
+                    "`{input}` is an input, which states do not hold: forbid values of what it moves"
+                )));
+            }
             self.knows_all_of(&states).map_err(wrong)?;
             let is_local = clauses.iter().any(|clause| matches!(clause, Clause::Location { .. }));
             if is_local {

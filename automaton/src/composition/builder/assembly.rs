@@ -1,19 +1,36 @@
 //! How parts are joined: channels, connections, slots and labels.
 
-use pleach_guards::{Expression, Substitution, variable};
+use pleach_guards::{Expression, Substitution, always, variable};
 
 use super::{CompositionBuilder, CompositionError, Part};
-use crate::composition::blueprint::{Change, Mode, ModeMotion};
+use crate::composition::blueprint::{Change, Leaving, Mode, ModeMotion};
+use crate::composition::sampler::Sampler;
 use crate::composition::{Component, Composition, Label};
 use crate::signals::{Signal, resolved};
 
 impl CompositionBuilder {
     /// Turns clocks that sample into components.
     pub(super) fn join_samplers(mut self) -> Result<Self, CompositionError> {
-        for sampler in std::mem::take(&mut self.samplers) {
-            let (label, sampled) = self.end_of_channel(&sampler.event, None)?;
-            self.parts[sampled].check_receptive(&label)?;
-            self = sampler.join(self, &label)?;
+        let mut sampled: Vec<String> = Vec::new();
+        let own: Vec<Sampler> = self.parts.iter().flat_map(Part::samplers).collect();
+        let (alone, clocks) = (self.parts.len() == 1, own.len());
+        let others = std::mem::take(&mut self.samplers);
+        for (number, sampler) in own.into_iter().chain(others).enumerate() {
+            let is_own = number < clocks;
+            // What happens in an automaton by itself goes by the names of the automaton.
+            let brief = sampler.event.strip_prefix(&*self.parts[0].name);
+            let brief = brief.and_then(|it| it.strip_prefix('.')).filter(|_| alone && is_own);
+            let (label, _) = self.end_of_channel(&sampler.event, brief)?;
+            if sampled.contains(&label) {
+                let (event, reason) = (sampler.event, "it is sampled already");
+                return Err(CompositionError::Sampler { event, reason });
+            }
+            let misses = !self.parts.iter().all(|part| part.always_takes(&label));
+            self = Sampler { misses, ..sampler }.join(self, &label)?;
+            if let Some(clock) = self.parts.last_mut() {
+                clock.is_clock = is_own;
+            }
+            sampled.push(label);
         }
         Ok(self)
     }
@@ -213,7 +230,7 @@ impl CompositionBuilder {
             let slots = &layout.slots[*first..];
             let own = part.blueprint.coordinates.iter().zip(slots);
             let named = part.signals_in(own.map(|(own, slot)| (*own, &*variables[*slot])));
-            let is_alone = self.parts.len() == 1;
+            let is_alone = self.is_alone();
             let brief = part.signals.iter().zip(named).map(move |((own, _), (name, formula))| {
                 (if is_alone { own.clone() } else { name }, formula)
             });
@@ -222,13 +239,18 @@ impl CompositionBuilder {
         self.parts.iter().zip(&layout.offsets).flat_map(of_part).collect()
     }
 
+    /// Whether there is one automaton, perhaps with clocks of its events.
+    fn is_alone(&self) -> bool {
+        self.parts.iter().filter(|part| !part.is_clock).count() == 1
+    }
+
     /// Gives every coordinate that is no input a slot, and every input the slot of what it reads.
     pub(super) fn lay_out(
         &self,
         sources: &[Option<usize>],
         composition: &mut Composition,
     ) -> Layout {
-        let alone = self.parts.len() == 1;
+        let alone = self.is_alone();
         let mut layout = Layout { offsets: Vec::new(), slots: vec![0; sources.len()] };
         let mut number = 0;
         for part in &self.parts {
@@ -236,7 +258,7 @@ impl CompositionBuilder {
             for (coordinate, value) in part.blueprint.coordinates.iter().zip(&part.initial) {
                 if sources[number].is_none() {
                     layout.slots[number] = composition.variables.len();
-                    let name = if alone {
+                    let name = if alone && !part.is_clock {
                         (*coordinate).to_owned()
                     } else {
                         format!("{}.{coordinate}", part.name)
@@ -344,23 +366,49 @@ impl Part {
         self.event_names().position(|event| event == name)
     }
 
+    /// The clocks of its events.
+    fn samplers(&self) -> impl Iterator<Item = Sampler> {
+        self.samplings.iter().filter_map(|(event, sampling)| {
+            let place = self.blueprint.events.iter().position(|known| known == event)?;
+            let event = format!("{}.{}", self.name, self.event_names().nth(place)?);
+            Some(Sampler { event, sampling: *sampling, misses: false })
+        })
+    }
+
     /// In every location that is ever entered there is a transition with this event.
     fn check_receptive(&self, event: &str) -> Result<(), CompositionError> {
+        match self.location_without(event, |_| true) {
+            Some(location) => Err(CompositionError::NotReceptive {
+                component: self.name.clone(),
+                event: event.to_owned(),
+                location,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether an event of this name, if it has one, can be taken at any time.
+    fn always_takes(&self, event: &str) -> bool {
+        let is_free = |leaving: &Leaving| *leaving.guard.predicate() == always();
+        self.event(event).is_none() || self.location_without(event, is_free).is_none()
+    }
+
+    /// A location that is ever entered and has no such transition with an event.
+    fn location_without(
+        &self,
+        event: &str,
+        is_such: impl Fn(&Leaving) -> bool,
+    ) -> Option<&'static str> {
         let (number, modes) = (self.event(event), &self.blueprint.modes);
         let is_entered = |location: usize| {
             let mut leaving = modes.iter().flat_map(|mode| &mode.leaving);
             location == self.blueprint.initial || leaving.any(|leaving| leaving.target == location)
         };
-        let is_deaf = |mode: &Mode| !mode.leaving.iter().any(|it| Some(it.event) == number);
+        let has_none =
+            |mode: &Mode| !mode.leaving.iter().any(|it| Some(it.event) == number && is_such(it));
         let mut numbered = modes.iter().enumerate();
-        match numbered.find(|(number, mode)| is_deaf(mode) && is_entered(*number)) {
-            Some((_, mode)) => Err(CompositionError::NotReceptive {
-                component: self.name.clone(),
-                event: event.to_owned(),
-                location: mode.name,
-            }),
-            None => Ok(()),
-        }
+        let found = numbered.find(|(number, mode)| has_none(mode) && is_entered(*number));
+        found.map(|(_, mode)| mode.name)
     }
 
     /// What the events are called in this component.

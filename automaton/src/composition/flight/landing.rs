@@ -22,11 +22,15 @@ impl Search<'_, '_> {
         failed: impl Fn(Fault) -> Halt,
     ) -> Result<Flight, Halt> {
         let must_leave = matches!(end, End::Leaving(_));
+        let mut known = None;
         let duration = match end {
             End::Leaving(time) => time,
             End::Never => Moment::from(limit),
-            End::At(time) if self.can_jump(time, &failed)? => time,
-            End::At(time) => {
+            End::At(time, state) if self.can_jump_in(&state)? => {
+                known = Some(state);
+                time
+            }
+            End::At(time, _) => {
                 let before = self.just_before(time.seconds(), &failed)?;
                 self.unless_nothing(before, &failed)?
             }
@@ -35,8 +39,12 @@ impl Search<'_, '_> {
                 if can_jump { Moment::from(time) } else { self.unless_nothing(before, &failed)? }
             }
         };
-        let duration = self.noticeable(duration);
-        let landing = self.solver.state_at(duration).map_err(|reason| failed(reason.into()))?;
+        let lasting = self.noticeable(duration);
+        let landing = match known.filter(|_| lasting == duration) {
+            Some(state) => state,
+            None => self.solver.state_at(lasting).map_err(|reason| failed(reason.into()))?,
+        };
+        let duration = lasting;
         let unknowns = self.solver.unknowns();
         let grazes = self.solver.grazes(duration.seconds());
         let pieces = self.solver.into_pieces(duration.seconds());

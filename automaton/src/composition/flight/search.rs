@@ -15,8 +15,8 @@ use crate::moment::Moment;
 
 /// Where a flight ends.
 pub(super) enum End {
-    /// Something has to happen, exactly at this time.
-    At(Moment),
+    /// Something has to happen, exactly at this time and in this state.
+    At(Moment, Vec<f64>),
     /// Something begins to have to happen.
     Onset(Onset),
     /// An invariant ends right after this time, at which something can be taken.
@@ -29,7 +29,7 @@ impl End {
     /// Whether nothing happens up to this time.
     pub(super) fn is_after(&self, time: f64) -> bool {
         match self {
-            End::At(end) | End::Leaving(end) => *end > Moment::from(time),
+            End::At(end, _) | End::Leaving(end) => *end > Moment::from(time),
             End::Onset(onset) => onset.time > time,
             End::Never => true,
         }
@@ -123,7 +123,7 @@ impl<'a> Search<'a, '_> {
             // At the end that was asked for something happens only if it does by itself.
             let state = self.state_at(to)?;
             if self.holds(&state, to.seconds())? {
-                return Ok(End::At(to));
+                return Ok(End::At(to, state));
             }
             from = to;
         }
@@ -382,7 +382,8 @@ pub(super) mod tests {
     #[test]
     fn nothing_happens_up_to_an_earlier_time() {
         let onset = End::Onset(Onset { before: 0.5, time: 2.0 });
-        for end in [End::At(Moment::from(2.0)), End::Leaving(Moment::from(2.0)), onset] {
+        for end in [End::At(Moment::from(2.0), Vec::new()), End::Leaving(Moment::from(2.0)), onset]
+        {
             assert!(end.is_after(1.0) && end.is_after(2f64.next_down()));
             assert!(!end.is_after(2.0) && !end.is_after(3.0));
         }

@@ -1,5 +1,7 @@
 //! Flights of groups: planned, ended, and what comes of them.
 
+use std::collections::BTreeSet;
+
 use pleach_guards::Verdict;
 
 use super::{Due, Failure, Halt, Simulation};
@@ -39,8 +41,8 @@ impl<'a> Simulation<'a> {
     }
 
     /// Plans what is left at the horizon: flights of groups that end there for rounding, with a jump.
-    pub(super) fn plan_last(&mut self) {
-        for group in std::mem::take(&mut self.awake) {
+    pub(super) fn plan_last(&mut self, awake: BTreeSet<usize>) {
+        for group in awake {
             // A flow that fails beyond the horizon is no matter.
             let is_planned = self.plan(group).is_ok();
             let is_last =

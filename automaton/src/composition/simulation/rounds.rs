@@ -1,5 +1,6 @@
 //! Rounds of jumps: who takes what, in which order.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use super::{Failure, Halt, Simulation, Taken};
@@ -18,11 +19,17 @@ impl Simulation<'_> {
         readiness: Readiness,
     ) -> Result<bool, Halt> {
         self.round += 1;
-        let members = groups.iter().map(|&group| &self.composition.groups[group].components);
-        let mut components: Vec<usize> = members.flatten().copied().collect();
-        components.sort_unstable();
+        let members = |group: &usize| &self.composition.groups[*group].components[..];
+        let components = match groups.len() {
+            1 => groups.first().map_or(Cow::default(), |group| members(group).into()),
+            _ => {
+                let mut components: Vec<usize> = groups.iter().flat_map(members).copied().collect();
+                components.sort_unstable();
+                components.into()
+            }
+        };
         let mut any = false;
-        for component in components {
+        for &component in components.iter() {
             if self.jumped[component] == self.round {
                 continue;
             }
@@ -65,10 +72,11 @@ impl Simulation<'_> {
         if let Some(joint) = self.compelled(group, component) {
             return Ok(Some(joint));
         }
+        let mut candidates = self.candidates(component, readiness);
         if !matches!(self.settings.policy, Policy::Random { .. }) {
-            return Ok(self.candidates(component, readiness, 1)?.pop());
+            return candidates.next().transpose();
         }
-        let mut candidates = self.candidates(component, readiness, usize::MAX)?;
+        let mut candidates = candidates.collect::<Result<Vec<Joint>, _>>()?;
         if candidates.is_empty() {
             return Ok(None);
         }
@@ -86,28 +94,23 @@ impl Simulation<'_> {
         Some(Joint { label: None, parts: vec![(component, transition)] })
     }
 
-    /// The first jumps in total order that `component` can take part in, `most` of them.
+    /// The jumps in total order that `component` can take part in.
     fn candidates(
         &self,
         component: usize,
         readiness: Readiness,
-        most: usize,
-    ) -> Result<Vec<Joint>, Failure> {
+    ) -> impl Iterator<Item = Result<Joint, Failure>> {
         let conditions = self.conditions(self.composition.components[component].group);
-        let mut candidates = Vec::new();
-        for (transition, leaving) in self.standing().leaving(component).iter().enumerate() {
+        let leaving = self.standing().leaving(component).iter().enumerate();
+        leaving.filter_map(move |(transition, leaving)| {
             let label = self.composition.components[component].labels[leaving.event];
             let joint = match label {
-                None if !conditions.is_wanted(leaving, readiness) => None,
-                None => self.standing().alone(component, transition, &self.values)?,
-                Some(label) => self.joint(label, &conditions, readiness)?,
+                None if !conditions.is_wanted(leaving, readiness) => return None,
+                None => self.standing().alone(component, transition, &self.values),
+                Some(label) => self.joint(label, &conditions, readiness),
             };
-            candidates.extend(joint);
-            if candidates.len() >= most {
-                break;
-            }
-        }
-        Ok(candidates)
+            joint.transpose()
+        })
     }
 
     /// The jump that all participants of a label take together, if they can and one of them wants.
@@ -160,11 +163,10 @@ impl Simulation<'_> {
                 return Err(Limit::Memory(memory).into());
             }
         }
-        let participants: Box<[usize]> = taken.moves.iter().map(|one| one.component).collect();
-        match &*participants {
-            [alone] => round.jumped(*alone, taken),
+        match &taken.moves[..] {
+            [alone] => round.jumped(alone.component, taken),
             all if all.len() == self.locations.len() => round.jumped_together(taken),
-            _ => round.jumped_some(participants, taken),
+            some => round.jumped_some(some.iter().map(|one| one.component).collect(), taken),
         }
         self.watch_chattering(group)
     }

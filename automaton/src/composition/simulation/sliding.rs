@@ -1,6 +1,5 @@
 //! Runs that slide: they jump to and fro over a boundary to which the flows of both sides lead.
 
-use pleach_continuous::flow::VectorField;
 use pleach_guards::{Enclosure, Interval};
 
 use super::{Halt, Move, Simulation};
@@ -102,8 +101,7 @@ impl Simulation<'_> {
         let mut locations = self.locations.clone();
         locations[one.component] = location;
         let field = self.field(component.group, &locations);
-        let mut rates = vec![0.0; field.start.len()];
-        field.rates(0.0, &field.start, &mut rates);
+        let rates = field.first_rates();
         let point = |(value, rate): (&f64, &f64)| {
             let rounded = Interval::new(value.next_down(), value.next_up());
             let value = rounded.unwrap_or(Interval::point(*value));

@@ -119,7 +119,7 @@ impl<W: Write> CsvLog<W> {
 
     fn jump(&mut self, jump: &Jumping<'_>) -> io::Result<()> {
         self.begin(jump.composition())?;
-        let components = jump.components().collect::<Vec<_>>().join(" ");
+        let components = jump.components().collect::<Vec<_>>().join("; ");
         self.row(jump.at.t, jump.at.j, [""; 2], jump.before)?;
         let after = jump.at.after_jump();
         self.row(after.t, after.j, [&components, jump.label], jump.after)

@@ -16,6 +16,8 @@ use crate::flow::{Curve, Piece};
 const LENGTH: f64 = 2.0;
 /// The most terms of a Taylor polynomial.
 const MOST_TERMS: usize = 32;
+/// For how many terms there is room at first.
+const FEW_TERMS: usize = 8;
 /// Terms of this part of the sum of magnitudes are below rounding.
 const NEGLIGIBLE: f64 = 1e-17;
 /// How often a piece may be halved before interpolation is tried.
@@ -26,10 +28,12 @@ const EXACT: f64 = 1e-12;
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 impl LinearFlow {
-    pub(super) fn piece_from(&self, time: f64) -> Piece {
+    /// The [piece](Curve::piece) that holds `time`, which may end at `limit`: a short one has few terms.
+    pub fn piece_up_to(&self, time: f64, limit: f64) -> Piece {
         let start = time.clamp(0.0, self.duration);
         let Some(coefficients) = &self.polynomial else {
-            return self.piece_of(self.field.exponential(), start);
+            let end = if limit > start { limit.min(self.duration) } else { self.duration };
+            return self.piece_of(self.field.exponential(), start, end);
         };
         let mut piece = Piece::new(0.0, self.duration, 0.0, 1.0);
         for component in 0..self.dimension() {
@@ -38,11 +42,13 @@ impl LinearFlow {
         piece
     }
 
-    fn piece_of(&self, exponential: &Exponential, start: f64) -> Piece {
-        let left = self.duration - start;
+    fn piece_of(&self, exponential: &Exponential, start: f64, end: f64) -> Piece {
+        let left = end - start;
         let wanted = (LENGTH / std::f64::consts::PI * exponential.time_scale(start)).min(left);
-        let mut state = vec![0.0; self.dimension()];
-        self.state_at(start, &mut state);
+        let mut state = self.start.clone();
+        if start > 0.0 {
+            self.state_at(start, &mut state);
+        }
         let mut length = wanted;
         for _ in 0..=HALVINGS {
             if let Some(piece) = exponential.taylor(&state, start, length) {
@@ -87,7 +93,8 @@ impl Exponential {
         let mut sums = most.clone();
         let mut moved = vec![0.0; most.len()];
         let (mut next, mut next_most) = (term.clone(), most.clone());
-        let mut terms = state.to_vec();
+        let mut terms = Vec::with_capacity(FEW_TERMS * dimension);
+        terms.extend_from_slice(state);
         for degree in 1..=MOST_TERMS + 1 {
             let step = length / degree as f64;
             for ((row, next), next_most) in self.generator.iter().zip(&mut next).zip(&mut next_most)
@@ -108,7 +115,8 @@ impl Exponential {
                 && let Some(rest) = remainder(&most, &sums, &moved, degree)
                 && rest <= NEGLIGIBLE
             {
-                let mut piece = Piece::new(start, start + length, start, length);
+                let mut piece = Piece::new(start, start + length, start, length)
+                    .with_room(dimension, degree - 1);
                 let terms = &terms[..(degree - 1) * dimension];
                 for (i, sum) in sums[..dimension].iter().enumerate() {
                     piece.push(terms.iter().copied().skip(i).step_by(dimension), rest * sum);
