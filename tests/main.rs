@@ -26,6 +26,7 @@ mod proofs;
 mod proven;
 mod public_api;
 mod records;
+mod reference;
 mod routes;
 mod scenario_faults;
 mod spaceex;

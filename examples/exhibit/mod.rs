@@ -21,6 +21,8 @@ pub use number::{number, numbers};
 
 /// What is folded up below the tables of an automaton.
 const DEFINITION: &str = "The formal definition";
+/// The longest formal definition that a page shows, in lines: longer ones only repeat the tables.
+const LONGEST_DEFINITION: usize = 24;
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
@@ -79,7 +81,7 @@ impl Exhibit {
         self.component(title, automaton).checked(&automaton.check())
     }
 
-    /// Shows an automaton that is a part of a composition: as a diagram, as tables, and by its
+    /// Shows an automaton that is a part of a composition: as a diagram, as tables and, where that is short, by its
     /// formal definition.
     pub fn component<L: Location, E: Event, S: Coordinates>(
         mut self,
@@ -87,10 +89,13 @@ impl Exhibit {
         automaton: &Automaton<L, E, S>,
     ) -> Self {
         let (table, definition) = (diagram::table(automaton), diagram::latex(automaton));
-        let definition = format!("```math\n{}\n```", definition.trim());
-        let folded =
-            format!("<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>");
-        let legend = format!("{table}\n{folded}\n");
+        let mut legend = table;
+        if definition.lines().count() <= LONGEST_DEFINITION {
+            let definition = format!("```math\n{}\n```", definition.trim());
+            legend += &format!(
+                "\n<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>\n"
+            );
+        }
         let diagram = diagram::svg(automaton);
         let automaton = Some(pages::Drawing::of(automaton));
         self.drawings.push(Drawing { title, diagram, automaton, legend });

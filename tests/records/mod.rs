@@ -132,7 +132,8 @@ fn every_changed_record_is_noticed_or_lawful() {
     assert_eq!(names.len(), changes.len(), "a name stands for one change");
     let fates = fates(&changes);
     let mut wrong = Vec::new();
-    let mut rows = String::new();
+    let (mut rows, mut tried, mut noticed) = (String::new(), 0, 0);
+    let mut by = BTreeMap::<_, usize>::new();
     for change in &changes {
         let Some(fate) = fates.get(change.name) else {
             wrong.push(format!("“{}” changes nothing anywhere", change.name));
@@ -146,34 +147,38 @@ fn every_changed_record_is_noticed_or_lawful() {
             (true, Some(_)) => wrong.push(format!("“{}” is always noticed", change.name)),
             _ => {}
         }
-        let properties: Vec<_> = fate.properties.iter().map(|property| property.name()).collect();
-        let row = format!(
-            "| {} | {} of {} | {} | {} |\n",
-            change.name,
-            fate.noticed,
-            fate.tried,
-            properties.join(", "),
-            reason.unwrap_or_default()
-        );
-        rows.push_str(&row);
+        tried += fate.tried;
+        noticed += fate.noticed;
+        for property in &fate.properties {
+            *by.entry(property.name()).or_default() += 1;
+        }
+        if let Some(reason) = reason {
+            rows +=
+                &format!("| {} | {} of {} | {reason} |\n", change.name, fate.noticed, fate.tried);
+        }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let lawful = lawful::REASONS.iter().find(|(name, _)| !names.contains(name));
     assert!(lawful.is_none(), "{lawful:?} is no change");
-    keep_table(&rows, changes.len());
+    let by: Vec<String> = by.iter().map(|(name, count)| format!("{name} {count}")).collect();
+    keep_table(&format!(
+        "{} kinds of change, of which {noticed} of {tried} instances are noticed, by the properties (with the number of \
+         kinds that each notices): {}.\n\n\
+         | change that may pass | noticed | why the record is lawful where it passes |\n\
+         | --- | --- | --- |\n{rows}",
+        changes.len(),
+        by.join(", ")
+    ));
 }
 
 const BEGIN: &str =
     "<!-- begin of the table: PLEACH_UPDATE_DOCS=1 cargo test --test it records -->";
 const END: &str = "<!-- end of the table -->";
 
-fn keep_table(rows: &str, count: usize) {
+fn keep_table(table: &str) {
     let document = read("docs/proofs.md");
     let (before, rest) = document.split_once(BEGIN).unwrap();
     let (_, after) = rest.split_once(END).unwrap();
-    let head = "| change of the record | noticed | by | where it passes, why it is lawful |\n\
-                | --- | --- | --- | --- |\n";
-    let table = format!("{count} changes:\n\n{head}{rows}");
     let refreshed = format!("{before}{BEGIN}\n\n{table}\n{END}{after}");
     keep_up_to_date("docs/proofs.md", &refreshed, "records");
 }
