@@ -154,10 +154,11 @@ fn study_one_differs_from_the_paper_as_the_page_on_the_model_says() {
     for pair in periods.windows(2) {
         let [before, after] = [&pair[0].snapshot, &pair[1].snapshot];
         let moved = |&robot: &usize| before.positions[robot] != after.positions[robot];
-        let is_of_team = |robot| [before, after].iter().any(|it| it.active_team.contains(robot));
+        let is_of_team =
+            |robot: usize| [before, after].iter().any(|it| it.active_team.contains(&robot));
         for robot in (0..after.positions.len()).filter(moved) {
             moves += 1;
-            settling += usize::from(!is_of_team(&robot));
+            settling += usize::from(!is_of_team(robot));
         }
     }
     for snapshot in periods.iter().map(|period| &period.snapshot) {
