@@ -169,6 +169,7 @@ fn study_one_differs_from_the_paper_as_the_page_on_the_model_says() {
         idle += snapshot.tree.len() - snapshot.tree.iter().filter(carries).count();
     }
     let page = crate::generated::read("docs/model.md");
+    let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
     for count in [
         format!("{settling} of {},{:03} moves", moves / 1000, moves % 1000),
         format!("{idle} of {},{:03} links", links / 1000, links % 1000),
