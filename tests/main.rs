@@ -19,6 +19,7 @@ mod documents;
 mod faulty_traces;
 mod harnesses;
 mod import;
+mod language;
 mod layering;
 mod outcomes;
 mod pages;

@@ -21,7 +21,7 @@ pub use number::{number, numbers};
 
 /// What is folded up below the tables of an automaton.
 const DEFINITION: &str = "The formal definition";
-/// The longest formal definition that a page shows, in lines: longer ones only repeat the tables.
+/// The longest formal definition that a page shows, in lines, with tables: longer ones only repeat the drawing.
 const LONGEST_DEFINITION: usize = 24;
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
@@ -81,19 +81,19 @@ impl Exhibit {
         self.component(title, automaton).checked(&automaton.check())
     }
 
-    /// Shows an automaton that is a part of a composition: as a diagram, as tables and, where that is short, by its
+    /// Shows an automaton that is a part of a composition: as a diagram and, where it is small, as tables and by its
     /// formal definition.
     pub fn component<L: Location, E: Event, S: Coordinates>(
         mut self,
         title: &'static str,
         automaton: &Automaton<L, E, S>,
     ) -> Self {
-        let (table, definition) = (diagram::table(automaton), diagram::latex(automaton));
-        let mut legend = table;
+        let definition = diagram::latex(automaton);
+        let mut legend = String::new();
         if definition.lines().count() <= LONGEST_DEFINITION {
-            let definition = format!("```math\n{}\n```", definition.trim());
-            legend += &format!(
-                "\n<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>\n"
+            let (table, definition) = (diagram::table(automaton), definition.trim());
+            legend = format!(
+                "{table}\n<details><summary>{DEFINITION}</summary>\n\n```math\n{definition}\n```\n\n</details>\n"
             );
         }
         let diagram = diagram::svg(automaton);
