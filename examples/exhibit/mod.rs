@@ -21,8 +21,8 @@ pub use number::{number, numbers};
 
 /// What is folded up below the tables of an automaton.
 const DEFINITION: &str = "The formal definition";
-/// The longest formal definition that a page shows, in lines, with tables: longer ones only repeat the drawing.
-const LONGEST_DEFINITION: usize = 24;
+/// The longest formal definition that a page shows, in words, with tables: longer ones only repeat the drawing.
+const LONGEST_DEFINITION: usize = 140;
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
@@ -90,7 +90,7 @@ impl Exhibit {
     ) -> Self {
         let definition = diagram::latex(automaton);
         let mut legend = String::new();
-        if definition.lines().count() <= LONGEST_DEFINITION {
+        if definition.split_whitespace().count() <= LONGEST_DEFINITION {
             let (table, definition) = (diagram::table(automaton), definition.trim());
             legend = format!(
                 "{table}\n<details><summary>{DEFINITION}</summary>\n\n```math\n{definition}\n```\n\n</details>\n"

@@ -156,8 +156,8 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt], now: &Snapshot) -> Complain
         return Err("no robot has called for another".to_owned());
     }
     if trials.len() != attempts.len() {
-        let (told, made) = (attempts.len(), trials.len());
-        return Err(format!("{told} calls are stated, and {made} were made"));
+        let (stated, made) = (attempts.len(), trials.len());
+        return Err(format!("{stated} calls are stated, and {made} were made"));
     }
     let mut tried = BTreeSet::new();
     for (attempt, trial) in attempts.iter().zip(trials) {
@@ -179,7 +179,7 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt], now: &Snapshot) -> Complain
     }
 }
 
-/// Who called when, and that every robot outside of its team is told of.
+/// Who called when, and that every robot outside of its team is stated of.
 fn is_call(attempt: &Attempt, trial: &Trial) -> Complaint {
     let robots = trial.snapshot.roles.len();
     let root = tree_of(trial.caller, &trial.snapshot).map(|access_point| robots + access_point);
@@ -246,15 +246,15 @@ fn could_not_come(other: &Other, trial: &Trial, tried: &BTreeSet<usize>) -> Comp
 
 /// A redundant robot in another tree than the caller, which has been tried or is to be tried next.
 fn is_apart(
-    told: Option<usize>,
+    stated: Option<usize>,
     is_redundant: bool,
     tree: Option<usize>,
     trial: &Trial,
     tried: &BTreeSet<usize>,
 ) -> Complaint {
     let robots = trial.snapshot.roles.len();
-    if !is_redundant || told != tree.map(|access_point| robots + access_point) {
-        return Err(format!("it is not redundant in the tree of {told:?}"));
+    if !is_redundant || stated != tree.map(|access_point| robots + access_point) {
+        return Err(format!("it is not redundant in the tree of {stated:?}"));
     }
     match tree {
         Some(tree) if Some(tree) == tree_of(trial.caller, &trial.snapshot) => {
@@ -269,7 +269,7 @@ fn is_apart(
 
 // ---- What stands -------------------------------------------------------------------------------
 
-/// Whether the team is told as it stands; returns how many hindrances there are.
+/// Whether the team is stated as it stands; returns how many hindrances there are.
 fn stand(judge: &Judge, team: &[Standing], last: &Snapshot) -> Result<usize, String> {
     let ledger = &judge.ledger;
     let moving = ledger.active_team();
@@ -366,10 +366,10 @@ fn is_in_the_way(
     }
 }
 
-fn equal(what: &str, told: f64, truly: f64, tolerance: f64) -> Complaint {
-    match (told - truly).abs() <= tolerance {
+fn equal(what: &str, stated: f64, truly: f64, tolerance: f64) -> Complaint {
+    match (stated - truly).abs() <= tolerance {
         true => Ok(()),
-        false => Err(format!("{what} is said to be {told:.6}, and it is {truly:.6}")),
+        false => Err(format!("{what} is said to be {stated:.6}, and it is {truly:.6}")),
     }
 }
 
