@@ -55,7 +55,7 @@ fn prose(page: &str) -> String {
 fn no_page_has_a_word_that_is_never_right() {
     let never = never_right();
     assert!(never.len() > 10, "{never:?}");
-    let mut pages = files_below(&root().join("docs"));
+    let mut pages = files_below(root().join("docs"));
     pages.retain(|path| path.extension().is_some_and(|it| it == "md"));
     pages.push(root().join("README.md"));
     let wrong = pages.iter().filter_map(|path| {
@@ -100,7 +100,7 @@ impl Messages {
 fn no_message_has_a_word_that_is_never_right() {
     let never = never_right();
     let (mut wrong, mut count) = (Vec::new(), 0);
-    let files = MESSAGES.iter().flat_map(|folder| files_below(&root().join(folder)));
+    let files = MESSAGES.iter().flat_map(|folder| files_below(root().join(folder)));
     for path in files.filter(|path| path.extension().is_some_and(|it| it == "rs")) {
         for message in Messages::of(&path) {
             count += 1;
