@@ -21,7 +21,10 @@ pub const REASONS: &[(&str, &str)] = &[
         "active team: it is emptied",
         "the team has become the active one a few periods before, and observers may receive it late",
     ),
-    ("active team: the last is dropped", "as above, where the team has one member"),
+    (
+        "active team: the last is dropped",
+        "this empties a team of one, and observers may receive late that it is the active one",
+    ),
     ("multipliers: one is shifted by 0.1", ITERATE),
     ("multipliers: two are swapped", ITERATE),
     (
