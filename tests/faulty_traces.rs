@@ -108,7 +108,7 @@ fn pages_of_missions_with_faults_say_so() {
     let page = page_of(&trace_of("redundant-node", &storm));
     assert!(says(&page));
     for (at, event, text) in [
-        (30, "stopped", "robot 3 has stopped, or is not heard"),
+        (30, "stopped", "robot 3 has stopped, or is not received"),
         (60, "restarted", "robot 3 is back"),
     ] {
         let told = format!(r#"{{"at":{at},"event":"{event}","telling":true,"text":"{text}"}}"#);

@@ -146,6 +146,38 @@ impl Leadership<'_> {
     }
 }
 
+/// A robot outside of the active team settles at its post, and links of the tree may carry nothing.
+#[test]
+fn study_one_differs_from_the_paper_as_the_page_on_the_model_says() {
+    let periods = &mission("study-1").periods;
+    let (mut moves, mut settling, mut links, mut idle) = (0, 0, 0, 0);
+    for pair in periods.windows(2) {
+        let [before, after] = [&pair[0].snapshot, &pair[1].snapshot];
+        let moved = |&robot: &usize| before.positions[robot] != after.positions[robot];
+        let is_of_team =
+            |robot: usize| [before, after].iter().any(|it| it.active_team.contains(&robot));
+        for robot in (0..after.positions.len()).filter(moved) {
+            moves += 1;
+            settling += usize::from(!is_of_team(robot));
+        }
+    }
+    for snapshot in periods.iter().map(|period| &period.snapshot) {
+        let carries = |&&(robot, parent): &&(usize, usize)| {
+            snapshot.routes.iter().any(|route| (route.from, route.to) == (robot, parent))
+        };
+        links += snapshot.tree.len();
+        idle += snapshot.tree.len() - snapshot.tree.iter().filter(carries).count();
+    }
+    let page = crate::generated::read("docs/model.md");
+    let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    for count in [
+        format!("{settling} of {},{:03} moves", moves / 1000, moves % 1000),
+        format!("{idle} of {},{:03} links", links / 1000, links % 1000),
+    ] {
+        assert!(page.contains(&count), "docs/model.md should say: {count}");
+    }
+}
+
 /// The third task of these two is led by the leaf of the second, which a team of subgroups
 /// relieves one after another.
 #[test]

@@ -21,6 +21,8 @@ pub use number::{number, numbers};
 
 /// What is folded up below the tables of an automaton.
 const DEFINITION: &str = "The formal definition";
+/// The longest formal definition that a page shows, in words, with tables: longer ones only repeat the drawing.
+const LONGEST_DEFINITION: usize = 140;
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
@@ -79,18 +81,21 @@ impl Exhibit {
         self.component(title, automaton).checked(&automaton.check())
     }
 
-    /// Shows an automaton that is a part of a composition: as a diagram, as tables, and by its
+    /// Shows an automaton that is a part of a composition: as a diagram and, where it is small, as tables and by its
     /// formal definition.
     pub fn component<L: Location, E: Event, S: Coordinates>(
         mut self,
         title: &'static str,
         automaton: &Automaton<L, E, S>,
     ) -> Self {
-        let (table, definition) = (diagram::table(automaton), diagram::latex(automaton));
-        let definition = format!("```math\n{}\n```", definition.trim());
-        let folded =
-            format!("<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>");
-        let legend = format!("{table}\n{folded}\n");
+        let definition = diagram::latex(automaton);
+        let mut legend = String::new();
+        if definition.split_whitespace().count() <= LONGEST_DEFINITION {
+            let (table, definition) = (diagram::table(automaton), definition.trim());
+            legend = format!(
+                "{table}\n<details><summary>{DEFINITION}</summary>\n\n```math\n{definition}\n```\n\n</details>\n"
+            );
+        }
         let diagram = diagram::svg(automaton);
         let automaton = Some(pages::Drawing::of(automaton));
         self.drawings.push(Drawing { title, diagram, automaton, legend });

@@ -86,7 +86,7 @@ pub enum Command {
     /// Make a page that plays a mission from its trace
     ///
     /// The page is one self-contained HTML file: the plan with robots, links and tree at every
-    /// control period, curves, the story and a summary. An incomplete trace is shown as far as it
+    /// control period, curves, events and a summary. An incomplete trace is shown as far as it
     /// goes. If `pleach judge` finds a violation, it is the headline of the page.
     Page(PageArguments),
     /// Decide whether any run of a SpaceEx model reaches forbidden states
@@ -334,13 +334,13 @@ pub enum Automaton {
     Exchange,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
-    /// Whether a robot's post belongs to a tree, from what its parent tells it
+    /// Whether a robot's post belongs to a tree, from its parent's messages
     Place,
     /// The control period of a robot: beacons, routes, the move, and the flow between samples
     Control,
     /// What an access point does for the user: announcements, elections, the end of the mission
     Service,
-    /// Whether a robot takes part, as an access point knows it
+    /// Whether a robot takes part, in the records of an access point
     Attendance,
     /// The control period of an access point
     Rounds,

@@ -194,7 +194,7 @@ impl MissionPage {
             told.collect::<Vec<_>>()
         };
         let (before, now) = (&self.absent, &snapshot.absent);
-        let stopped = changed(now, before, "stopped", "has stopped, or is not heard");
+        let stopped = changed(now, before, "stopped", "has stopped, or is not received");
         let restarted = changed(before, now, "restarted", "is back");
         self.events.extend(stopped.into_iter().chain(restarted));
         self.absent.clone_from(now);

@@ -31,19 +31,11 @@ pub fn complaints(harness: &Harness) -> Vec<String> {
     complaints.iter().map(|complaint| format!("{file}: `{name}`: {complaint}")).collect()
 }
 
-/// The conditions of the covers of a harness; none of those that say whether a branch is reached.
-pub fn covers(harness: &Harness) -> Vec<Option<String>> {
-    let mut reader = Reader::new(harness);
-    reader.visit_block(&harness.body);
-    reader.covers
-}
-
 struct Reader<'a> {
     unwind: usize,
     shapes: Shapes<'a>,
     /// The line of an assumption that no cover has followed yet.
     uncovered_assumption: Option<usize>,
-    covers: Vec<Option<String>>,
     complaints: Vec<String>,
 }
 
@@ -53,7 +45,6 @@ impl<'a> Reader<'a> {
             unwind: harness.unwind,
             shapes: Shapes::new(harness),
             uncovered_assumption: None,
-            covers: Vec::new(),
             complaints: Vec::new(),
         }
     }
@@ -153,7 +144,6 @@ impl<'ast> Visit<'ast> for Reader<'_> {
         let Ok(arguments) = parser.parse2(called.tokens.clone()) else { return };
         if is_called(&called.path, "cover") {
             self.uncovered_assumption = None;
-            self.covers.push(arguments.first().map(text_of));
         }
         for argument in &arguments {
             Visit::visit_expr(self, argument);

@@ -86,15 +86,15 @@ macro_rules! of_kind {
                 },
             },
             Change {
-                name: concat!($name, ": it is told twice"),
+                name: concat!($name, ": it is reported twice"),
                 make: |record, site| duplicate(record, site, |event| matches!(event, $pattern)),
             },
             Change {
-                name: concat!($name, ": it is told five periods later"),
+                name: concat!($name, ": it is reported five periods later"),
                 make: |record, site| delay(record, site, |event| matches!(event, $pattern)),
             },
             Change {
-                name: concat!($name, ": it is told of another"),
+                name: concat!($name, ": it is about another"),
                 make: |record, site| rename(record, site, |event| matches!(event, $pattern)),
             },
         )+]

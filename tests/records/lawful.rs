@@ -11,17 +11,20 @@ pub const REASONS: &[(&str, &str)] = &[
         "the outcome is “interrupted”",
         "a run may be interrupted after the last task is serviced, while robots come to rest",
     ),
-    ("phase: it is that of the period before", "observers may hear of a step of the mission late"),
-    ("phase: it is the next one", "robots may be on Σ before the event that tells of its path"),
+    ("phase: it is that of the period before", "observers may receive a step of the mission late"),
+    ("phase: it is the next one", "robots may be on Σ before the event that reports its path"),
     (
         "task: none is pursued",
-        "it has been announced a few periods before, and observers may hear of it late",
+        "it has been announced a few periods before, and observers may receive it late",
     ),
     (
         "active team: it is emptied",
-        "the team has become the active one a few periods before, and observers may hear of it late",
+        "the team has become the active one a few periods before, and observers may receive it late",
     ),
-    ("active team: the last is dropped", "as above, where the team has one member"),
+    (
+        "active team: the last is dropped",
+        "this empties a team of one, and observers may receive late that it is the active one",
+    ),
     ("multipliers: one is shifted by 0.1", ITERATE),
     ("multipliers: two are swapped", ITERATE),
     (
@@ -40,20 +43,20 @@ pub const REASONS: &[(&str, &str)] = &[
     ("active team: two teams at once", EARLY),
     ("path: the primary team is on it", EARLY),
     ("posts: a junction is none", BRANCHES),
-    ("subgroup started: it is told five periods later", "observers may hear of the start late"),
+    ("subgroup started: it is reported five periods later", "observers may receive the start late"),
     (
-        "subgroup arrived: it is told five periods later",
-        "robots may act on an arrival before the one that tells of it knows",
+        "subgroup arrived: it is reported five periods later",
+        "robots may act on an arrival before the event that reports it",
     ),
     ("reattached: it is dropped", SHOWN),
-    ("reattached: it is told twice", SHOWN),
-    ("reattached: it is told five periods later", SHOWN),
+    ("reattached: it is reported twice", SHOWN),
+    ("reattached: it is reported five periods later", SHOWN),
     ("false: p₁ attaches to the node that it is attached to", SHOWN),
 ];
 
 const BRANCHES: &str = "where branches part is compared only while no subgroup is under way and no event \
-                        was so recent that news of it may be";
-const EARLY: &str = "a path Σ may be seen before it is told, while a recruit is called for that is to release the leader";
+                        was so recent that its news may be under way";
+const EARLY: &str = "a path Σ may be seen before it is reported, while a recruit is called for that is to release the leader";
 const ITERATE: &str =
     "λ is what a robot's iteration has come to; no property speaks of it but its sign";
 const SHOWN: &str =

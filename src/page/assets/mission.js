@@ -171,7 +171,7 @@ class Facts {
     const [out, into] = [links.filter(link => link.from === robot), links.filter(link => link.to === robot)];
     const load = out.reduce((sum, link) => sum + link.share, 0);
     return [`Robot ${robot}`, [
-      mission.isAbsent(robot, step) && ["state", "stopped, or not heard"],
+      mission.isAbsent(robot, step) && ["state", "stopped, or not received"],
       ["role", mission.role(robot, step)],
       ["location", this.location(robot, step)],
       ["target", this.target(robot, step)],
@@ -179,7 +179,7 @@ class Facts {
       ["multiplier λᵢ", written(mission.multiplier(robot, step))],
       ["load ΣTᵢⱼ", written(load, 4)],
       this.messages(robot, step),
-      ["hears", this.heard(robot, step)],
+      ["receives from", this.heard(robot, step)],
       this.knowledge(robot, step),
       ["parent", parent === undefined ? "none" : mission.nodeName(parent)],
       ["children", children.length ? children.join(", ") : "none"],
@@ -200,7 +200,7 @@ class Facts {
       ["position", `(${written(x)}, ${written(y)})`],
       ["children", children.length ? children.join(", ") : "none"],
       ["receives ΣTᵢⱼRᵢⱼ", written(arriving, 4)],
-      ["hears", this.heard(node, step)],
+      ["receives from", this.heard(node, step)],
     ], linkTable(mission, [], into)];
   }
 
@@ -214,13 +214,13 @@ class Facts {
   /** The messages of a control period. */
   messages(robot, step) {
     const [sent, heard] = ["sent", "heard"].map(name => this.mission.numbers[name].columns[robot]?.at(step));
-    return sent === undefined ? null : ["messages", `${sent} sent, ${heard} heard in this period`];
+    return sent === undefined ? null : ["messages", `${sent} sent, ${heard} received in this period`];
   }
 
   /** Where the mission stands as far as a robot knows. */
   knowledge(robot, step) {
     const phase = this.mission.named("known_phase", robot, step);
-    return phase === null ? null : ["knows of", phase];
+    return phase === null ? null : ["its phase", phase];
   }
 
   /** Where a robot goes or stays, and why. */
@@ -286,7 +286,7 @@ function linkTable(mission, out, into) {
 
 /** The marks of nodes that stop and restart: a cross, and an arrow upwards. */
 const ATTENDANCE = [
-  { name: "stopped", about: "node stopped, or not heard", strokes: [[[-0.8, -0.8], [0.8, 0.8]], [[-0.8, 0.8], [0.8, -0.8]]] },
+  { name: "stopped", about: "node stopped, or not received", strokes: [[[-0.8, -0.8], [0.8, 0.8]], [[-0.8, 0.8], [0.8, -0.8]]] },
   { name: "restarted", about: "node back", strokes: [[[0, 0.9], [0, -0.9]], [[-0.7, -0.2], [0, -0.9], [0.7, -0.2]]] },
 ];
 

@@ -174,7 +174,7 @@ class Story {
     const details = hasDetails && element("label", {},
       element("input", { type: "checkbox", onchange: event =>
         this.list.classList.toggle("detailed", event.target.checked) }), " details");
-    parent.append(element("h2", {}, "Story ", details || null), this.list);
+    parent.append(element("h2", {}, "Events ", details || null), this.list);
     player.onChange(() => this.show());
     this.show();
   }

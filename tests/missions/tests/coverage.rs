@@ -16,7 +16,7 @@ use pleach::automaton::network::scenario::RoutingMethod;
 use pleach::verify::network::storm::{Kind, draw, network_on};
 use pleach_exploration::network::QUICK;
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Random missions of each family by each strategy.
@@ -165,39 +165,41 @@ fn every_row_is_taken_or_has_a_reason() {
     let mut page = format!(
         "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test -p missions --test it coverage -->\n\n\
          # Coverage of the tables by tests\n\n\
-         In how many of the {} shipped scenarios, of {} other missions (random, under stress, at their \
-         limits, those that have failed once), of {} storms, and of {configurations} configurations that are \
-         explored exhaustively some node takes each row of its tables. The explorer stands for routes and \
-         motion: rows of the control period are not taken there. For a row that none of them takes, the \
-         last column says why it is there.\n",
+         *For people who change the protocol: which rows of the tables do tests take, and why are the others there?*\n\n\
+         How many rows of each table some node takes in {} shipped scenarios, {} other missions (random, under stress, at \
+         their limits, those that have failed once), {} missions with random faults, and {configurations} \
+         configurations that are explored exhaustively. The explorer stands for routes and motion: it takes no rows of \
+         the control period for them.\n\n\
+         | table | rows | scenarios | others | faults | explored | none |\n\
+         | --- | --: | --: | --: | --: | --: | --: |\n",
         in_scenarios.missions, in_others.missions, in_storms.missions,
     );
-    let (mut unexplained, mut used, mut title) = (Vec::new(), BTreeSet::new(), "");
-    for (row, times) in &in_scenarios.rows {
-        if row.table != title {
-            title = row.table;
-            page += &format!(
-                "\n## Table: {title}\n\n\
-                 | source | event | target | scenarios | others | storms | explored | otherwise |\n\
-                 | --- | --- | --- | --: | --: | --: | --: | --- |\n"
-            );
-        }
-        let NamedRow { source, event, target, .. } = row;
+    let mut tables = BTreeMap::<&str, [usize; 6]>::new();
+    let mut without = BTreeMap::<&str, Vec<String>>::new();
+    let mut unexplained = Vec::new();
+    for (row, &times) in &in_scenarios.rows {
         let [other, storms] =
             [&in_others.rows, &in_storms.rows].map(|taken| taken.get(row).copied().unwrap_or(0));
-        let explored = in_explored[&row.to_string()];
-        let is_taken = times + other + storms + explored > 0;
-        let why = if is_taken { None } else { reason(row) };
-        page += &format!(
-            "| {source} | {event} | {target} | {times} | {other} | {storms} | {explored} | {} |\n",
-            why.unwrap_or_default()
-        );
-        used.extend(why);
-        if !is_taken && why.is_none() {
-            unexplained.push(row.to_string());
+        let taken = [times, other, storms, in_explored[&row.to_string()]].map(|count| count > 0);
+        let is_untaken = taken == [false; 4];
+        let [scenarios, others, storms, explored] = taken;
+        let counts = [true, scenarios, others, storms, explored, is_untaken].map(usize::from);
+        let sums = tables.entry(row.table).or_default();
+        sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+        match reason(row) {
+            Some(why) if is_untaken => without.entry(why).or_default().push(row.to_string()),
+            None if is_untaken => unexplained.push(row.to_string()),
+            _ => {}
         }
     }
-    page += "\n## What is said\n\nIn how many missions each kind of message is heard.\n\n\
+    for (table, counts) in tables {
+        page += &format!("| {table} | {} |\n", counts.map(|count| count.to_string()).join(" | "));
+    }
+    page += "\n## Rows that none of them takes\n\n| rows | for example | why they are there |\n| --: | --- | --- |\n";
+    for (why, rows) in &without {
+        page += &format!("| {} | {} | {why} |\n", rows.len(), rows[0]);
+    }
+    page += "\n## Messages\n\nIn how many missions each kind of message is received.\n\n\
              | message | scenarios | others | otherwise |\n| --- | --: | --: | --- |\n";
     for &(kind, why) in SAID {
         let [here, there] =
@@ -207,7 +209,7 @@ fn every_row_is_taken_or_has_a_reason() {
             unexplained.push(format!("{kind} is heard in {} missions", here + there));
         }
     }
-    let needless = REASONS.iter().filter(|(_, reason)| !used.contains(reason));
+    let needless = REASONS.iter().filter(|(_, reason)| !without.contains_key(reason));
     unexplained.extend(needless.map(|(_, reason)| format!("needless: {reason}")));
     keep_up_to_date("../../docs/coverage.md", &page, "coverage");
     assert!(

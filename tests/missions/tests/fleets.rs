@@ -413,7 +413,7 @@ const SPOILS: [Spoil; 17] = [
         &[Property::Outcome],
     ),
     (
-        "it is not told how a fleet ended",
+        "it is not reported how a fleet ended",
         |lines| {
             end(lines)["fleets"].as_array_mut().unwrap().pop();
         },

@@ -156,8 +156,8 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt], now: &Snapshot) -> Complain
         return Err("no robot has called for another".to_owned());
     }
     if trials.len() != attempts.len() {
-        let (told, made) = (attempts.len(), trials.len());
-        return Err(format!("{told} calls are told, and {made} were made"));
+        let (stated, made) = (attempts.len(), trials.len());
+        return Err(format!("{stated} calls are stated, and {made} were made"));
     }
     let mut tried = BTreeSet::new();
     for (attempt, trial) in attempts.iter().zip(trials) {
@@ -179,7 +179,7 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt], now: &Snapshot) -> Complain
     }
 }
 
-/// Who called when, and that every robot outside of its team is told of.
+/// Who called when, and that every robot outside of its team is stated of.
 fn is_call(attempt: &Attempt, trial: &Trial) -> Complaint {
     let robots = trial.snapshot.roles.len();
     let root = tree_of(trial.caller, &trial.snapshot).map(|access_point| robots + access_point);
@@ -188,7 +188,7 @@ fn is_call(attempt: &Attempt, trial: &Trial) -> Complaint {
         && (attempt.stretched, attempt.then) == (trial.stretched, trial.then);
     if !is_so {
         return Err(format!(
-            "robot {} is told to have called in the tree of {:?} until k = {}, and robot {} did in that of \
+            "robot {} is said to have called in the tree of {:?} until k = {}, and robot {} did in that of \
              {root:?} until k = {}",
             attempt.caller, attempt.root, attempt.k, trial.caller, trial.snapshot.step
         ));
@@ -197,7 +197,7 @@ fn is_call(attempt: &Attempt, trial: &Trial) -> Complaint {
     match attempt.others.iter().map(|other| other.robot).eq(others) {
         true => Ok(()),
         false => {
-            Err(format!("at k = {} not every robot outside of the team is told of once", attempt.k))
+            Err(format!("at k = {} not every robot outside of the team is listed once", attempt.k))
         }
     }
 }
@@ -240,21 +240,21 @@ fn could_not_come(other: &Other, trial: &Trial, tried: &BTreeSet<usize>) -> Comp
         Because::Apart { root } => {
             is_apart(*root, is_redundant, tree_of(*robot, now), trial, tried)
         }
-        other => Err(format!("the judge does not know the reason {other:?}")),
+        other => Err(format!("no reason is called {other:?}")),
     }
 }
 
 /// A redundant robot in another tree than the caller, which has been tried or is to be tried next.
 fn is_apart(
-    told: Option<usize>,
+    stated: Option<usize>,
     is_redundant: bool,
     tree: Option<usize>,
     trial: &Trial,
     tried: &BTreeSet<usize>,
 ) -> Complaint {
     let robots = trial.snapshot.roles.len();
-    if !is_redundant || told != tree.map(|access_point| robots + access_point) {
-        return Err(format!("it is not redundant in the tree of {told:?}"));
+    if !is_redundant || stated != tree.map(|access_point| robots + access_point) {
+        return Err(format!("it is not redundant in the tree of {stated:?}"));
     }
     match tree {
         Some(tree) if Some(tree) == tree_of(trial.caller, &trial.snapshot) => {
@@ -269,7 +269,7 @@ fn is_apart(
 
 // ---- What stands -------------------------------------------------------------------------------
 
-/// Whether the team is told as it stands; returns how many hindrances there are.
+/// Whether the team is stated as it stands; returns how many hindrances there are.
 fn stand(judge: &Judge, team: &[Standing], last: &Snapshot) -> Result<usize, String> {
     let ledger = &judge.ledger;
     let moving = ledger.active_team();
@@ -284,7 +284,7 @@ fn stand(judge: &Judge, team: &[Standing], last: &Snapshot) -> Result<usize, Str
             && judge.headings[*robot] == target.map(Point::from);
         if !is_so {
             return Err(format!(
-                "robot {robot} does not stand, or did not go, where it is told to"
+                "robot {robot} does not stand, or did not go, where it is said to"
             ));
         }
         for hindrance in hindrances {
@@ -314,7 +314,7 @@ fn is_in_the_way(
             at_most("the distance of a robot", distance, PASSAGE * clearance)?;
             match last.absent.contains(&other) == stopped {
                 true => Ok(()),
-                false => Err(format!("whether robot {other} has stopped is told wrongly")),
+                false => Err(format!("whether robot {other} has stopped is stated wrongly")),
             }
         }
         Hindrance::Body { position, distance } => {
@@ -362,14 +362,14 @@ fn is_in_the_way(
                 false => Err(format!("a load of {load:.6} leaves robot {sender} time to send")),
             }
         }
-        ref other => Err(format!("the judge does not know the hindrance {other:?}")),
+        ref other => Err(format!("no hindrance is called {other:?}")),
     }
 }
 
-fn equal(what: &str, told: f64, truly: f64, tolerance: f64) -> Complaint {
-    match (told - truly).abs() <= tolerance {
+fn equal(what: &str, stated: f64, truly: f64, tolerance: f64) -> Complaint {
+    match (stated - truly).abs() <= tolerance {
         true => Ok(()),
-        false => Err(format!("{what} is told to be {told:.6}, and it is {truly:.6}")),
+        false => Err(format!("{what} is said to be {stated:.6}, and it is {truly:.6}")),
     }
 }
 

@@ -70,7 +70,7 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
                 return record(format!("an event names node {parent}, of {}", limits.nodes()));
             }
         }
-        other => return record(format!("the judge does not know the event {other:?}")),
+        other => return record(format!("no event is called {other:?}")),
     }
     if let Some(robot) = robots.into_iter().find(|&robot| robot >= limits.robots()) {
         return record(format!("an event names robot {robot}, of {}", limits.robots()));

@@ -74,7 +74,7 @@ impl Clock {
     ) -> Option<String> {
         let Some(last) = last else { return Some("nothing is on record".to_owned()) };
         if !end.fleets.is_empty() {
-            return Some(format!("the end tells of fleets {ONE_TEAM}"));
+            return Some(format!("the end lists fleets {ONE_TEAM}"));
         }
         match end.outcome {
             Outcome::Serviced if serviced < tasks => {

@@ -172,7 +172,7 @@ impl Conclusions {
         if step - *self.untold.get_or_insert(step) <= self.patience {
             return Ok(());
         }
-        let sentence = format!("the arrival of subgroup {subgroup}, {robots:?}, is not told");
+        let sentence = format!("the arrival of subgroup {subgroup}, {robots:?}, is not reported");
         Err(Dispute::of(Property::Subgroups, robots, sentence))
     }
 

@@ -230,7 +230,7 @@ impl<'a> FleetJudge<'a> {
                 };
                 let before = self.over.as_ref().map(|(period, _)| *period);
                 let sentence = format!(
-                    "the mission of access point {} is told to be {}, and was {} in the step before",
+                    "the mission of access point {} is said to be {}, and was {} in the step before",
                     self.access_point(),
                     since(ended),
                     since(before)
@@ -261,7 +261,7 @@ impl<'a> FleetJudge<'a> {
         let told = whole.fleets.iter().find(|it| it.access_point == access_point);
         let Some(FleetEnd { end, .. }) = told else {
             return Err(format!(
-                "it is not told how the mission of access point {access_point} ended"
+                "it is not reported how the mission of access point {access_point} ended"
             ));
         };
         end.renumbered(self.fleet.inward()).ok_or_else(|| {

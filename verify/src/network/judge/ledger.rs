@@ -212,7 +212,7 @@ impl Ledger {
             MissionEvent::TaskGivenUp { task, .. } => self.give_up(*task),
             MissionEvent::DutiesExchanged { mover, parked } => self.exchange(*mover, *parked),
             MissionEvent::Reattached { .. } | MissionEvent::RouteInfeasible { .. } => Ok(()),
-            other => dispute(&[], format!("the judge does not know the event {other:?}")),
+            other => dispute(&[], format!("no event is called {other:?}")),
         }
     }
 
@@ -381,7 +381,7 @@ impl Ledger {
         if let Some((subgroup, robots)) = self.untold.first() {
             let sentence = format!(
                 "robot {robot} is recruited, and the arrival of subgroup {subgroup}, {robots:?}, \
-                 was never told"
+                 was never reported"
             );
             return Err(Dispute::of(Property::Subgroups, robots, sentence));
         }

@@ -76,7 +76,7 @@ impl TaskClaims {
             let clause = || format!("robot {robot} is said to service task {task}");
             self.runs(robot, snapshot, clause)?;
             if !self.terms.has_been_serviced(task) {
-                let sentence = format!("{}, and no event tells that it does", clause());
+                let sentence = format!("{}, and no event says that it does", clause());
                 return Err(Dispute::of(Property::Service, &[robot], sentence));
             }
             self.seen.insert(task, snapshot.step);
