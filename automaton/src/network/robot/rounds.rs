@@ -125,12 +125,12 @@ impl Robot {
     /// Rounds that the robot lets pass before its next tick, counted from its last one: up to the
     /// last of its stage while it has nothing to tell or to judge.
     ///
-    /// For beacons, sweeps and the negotiation this leaves out work that would change nothing. For iterations and the
-    /// reservation it is part of the protocol: with a tick in every round, other messages are sent.
+    /// For beacons and the negotiation this leaves out work that would change nothing. For iterations, sweeps and the
+    /// reservation it is part of the protocol: with a tick in every round, other messages are sent, in sweeps only where
+    /// messages are lost.
     pub(super) fn rounds_to_pass(&self) -> usize {
         let settings = &self.site.settings;
-        let is_derived =
-            matches!(self.stage(), Stage::Beacons | Stage::Sweeps | Stage::Negotiation);
+        let is_derived = matches!(self.stage(), Stage::Beacons | Stage::Negotiation);
         if is_derived && !self.caches() {
             return 0;
         }
