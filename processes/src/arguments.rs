@@ -40,7 +40,7 @@ pub enum ProcessCommand {
 /// How a process reaches the others.
 #[derive(Clone, Debug, Args)]
 pub struct NetworkArguments {
-    /// The name of the session: processes of other sessions are not heard
+    /// The name of the session: processes of other sessions are not received
     #[arg(long, value_name = "NAME", default_value = "pleach")]
     pub session: Session,
     /// Listen at this endpoint of Zenoh, such as tcp/0.0.0.0:7447 [default: tcp/127.0.0.1:7447 for
@@ -58,7 +58,7 @@ pub struct NetworkArguments {
     /// before what it says
     #[arg(long, value_name = "FILE")]
     pub zenoh: Option<PathBuf>,
-    /// Seconds after which a process that has heard nobody gives up
+    /// Seconds after which a process that receives no other gives up
     #[arg(long, value_name = "SECONDS", default_value = "20")]
     pub wait: Seconds,
 }

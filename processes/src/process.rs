@@ -302,7 +302,7 @@ impl<'a> Process<'a> {
         let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
         let Stamp { period, round, .. } = latest;
         format!(
-            "{own} has heard the mission in round {round} of k = {period}, and nothing later for \
+            "{own} has received the mission in round {round} of k = {period}, and nothing later for \
              {seconds} s, so that it cannot join with the next control period: is the mission over? If \
              a control period takes longer, wait for it with --wait"
         )
@@ -312,11 +312,11 @@ impl<'a> Process<'a> {
         let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
         match (self.strangers.count(), &self.scenario.name) {
             (0, _) => format!(
-                "{own} has heard no other node within {seconds} s: are they started, with the same \
+                "{own} has received no other node within {seconds} s: are they started, with the same \
                  --session, and does --connect name an endpoint at which one listens?"
             ),
             (others, name) => format!(
-                "{own} has heard no other node with the scenario {name:?} within {seconds} s, and \
+                "{own} has received no other node with the scenario {name:?} within {seconds} s, and \
                  {others} with another one"
             ),
         }
@@ -620,7 +620,7 @@ mod tests {
         sender.send(packet(4, 3)).unwrap();
         let said = robot.wait_for_others().unwrap_err().to_string();
         let begin =
-            "robot 0 has heard the mission in round 3 of k = 4, and nothing later for 0.5 s";
+            "robot 0 has received the mission in round 3 of k = 4, and nothing later for 0.5 s";
         assert!(said.starts_with(begin), "{said}");
     }
 

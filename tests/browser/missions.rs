@@ -309,7 +309,7 @@ fn a_robot_under_the_pointer_tells_its_facts() {
     let facts = page.value("document.getElementById('facts').innerText");
     let facts = facts.as_str().unwrap();
     for fact in
-        ["Robot 11", "leader", "leading the team", "task 1, at (", "robot 10", "sent", "heard"]
+        ["Robot 11", "leader", "leading the team", "task 1, at (", "robot 10", "sent", "received"]
     {
         assert!(facts.contains(fact), "{fact} is not in {facts}");
     }
