@@ -270,7 +270,10 @@ fn nobody_is_heard() {
     let session = Session::new("nobody", "too-few");
     let mut robot = session.command("robot");
     robot.args(["--id", "0", "--wait", "1"]);
-    assert_says(&refused(robot), &["robot 0 has received no other node", "within 1 s", "--connect"]);
+    assert_says(
+        &refused(robot),
+        &["robot 0 has received no other node", "within 1 s", "--connect"],
+    );
     let mut watch = session.command("watch");
     watch.args(["--wait", "1", "--no-figures"]);
     assert_says(&refused(watch), &["nobody reports for 1 s", "--session"]);
