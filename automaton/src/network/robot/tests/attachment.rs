@@ -81,18 +81,18 @@ fn links_are_measured_along_geodesics() {
 }
 
 #[test]
-fn a_parent_is_kept_within_reach_and_while_no_other_has_fewer_links() {
-    let settled = robot().settled_length();
+fn a_parent_is_kept_up_to_d_hard_and_while_no_other_has_fewer_links() {
+    let hard = robot().hard_length();
     let rival = |posts: &[u32]| beacon(2, west(0.5), fixed(12, 13), posts);
     let keeps = |length: f64, posts: &[u32]| {
         let mut robot = robot();
         robot.holds(redundant(0, 11));
         choice(&mut robot, [beacon(1, east(length), fixed(11, 13), &[11, 13]), rival(posts)])
     };
-    assert_eq!(keeps(settled - LITTLE, &[12, 13]), at(11), "no fewer links");
-    assert_eq!(keeps(settled - LITTLE, &[12]), at(12), "fewer links");
-    assert_eq!(keeps(settled + LITTLE, &[12, 13]), at(12), "too long");
-    assert_eq!(keeps(settled - LITTLE, &[12, 14, 13]), at(11), "more links");
+    assert_eq!(keeps(hard - LITTLE, &[12, 13]), at(11), "no fewer links");
+    assert_eq!(keeps(hard - LITTLE, &[12]), at(12), "fewer links");
+    assert_eq!(keeps(hard + LITTLE, &[12, 13]), at(12), "too long");
+    assert_eq!(keeps(hard - LITTLE, &[12, 14, 13]), at(11), "more links");
 }
 
 /// A robot that has come to its place of Σ hears of its way a few rounds later.
