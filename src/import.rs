@@ -297,17 +297,40 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Plan, ImportError> {
             return Err(malformed(format!("the {name} is {length}: it must be positive")));
         }
     }
+    let check = |kind: Kind| kind.check(reading).map_err(malformed);
     let plan = match ending_of(path).as_str() {
         "yaml" | "yml" => match yaml_of(path)? {
-            keys if building::is_one(&keys) => building::read(&keys, reading),
-            keys => ros::read(path, &keys)?.trace(reading),
+            keys if building::is_one(&keys) => {
+                check(Kind::Features)?;
+                building::read(&keys, reading)
+            }
+            keys => {
+                check(Kind::Cells)?;
+                ros::read(path, &keys)?.trace(reading)
+            }
         },
-        "map" => moving_ai::read(&text()?).map_err(malformed)?.trace(reading),
-        "geojson" | "json" => geojson::read(&text()?, reading),
-        "osm" => osm::read(&text()?, reading),
-        "svg" => svg::read(&text()?, reading),
-        "dxf" => dxf(path, reading),
+        "map" => {
+            check(Kind::Cells)?;
+            moving_ai::read(&text()?).map_err(malformed)?.trace(reading)
+        }
+        "geojson" | "json" => {
+            check(Kind::OnEarth)?;
+            geojson::read(&text()?, reading)
+        }
+        "osm" => {
+            check(Kind::OnEarth)?;
+            osm::read(&text()?, reading)
+        }
+        "svg" => {
+            check(Kind::Drawing)?;
+            svg::read(&text()?, reading)
+        }
+        "dxf" => {
+            check(Kind::Features)?;
+            dxf(path, reading)
+        }
         "png" | "pgm" | "pnm" | "ppm" | "pbm" | "bmp" | "jpg" | "jpeg" | "tif" | "tiff" => {
+            check(Kind::Image)?;
             image::read(path, reading)?.trace(reading)
         }
         _ => return Err(ImportError::UnknownKind(path.into())),
@@ -322,6 +345,45 @@ use self::dxf::read as dxf;
 fn dxf(_: &Path, _: &Reading) -> Result<Plan, String> {
     Err("this program is built without DXF; build one with cargo build --release --features dxf"
         .into())
+}
+
+/// Kinds of map, by what can be stated of how they are read.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Image,
+    Cells,
+    Drawing,
+    Features,
+    OnEarth,
+}
+
+impl Kind {
+    /// Refuses what is stated and would have no effect.
+    fn check(self, reading: &Reading) -> Result<(), String> {
+        use Kind::{Cells, Drawing, Features, Image, OnEarth};
+        let stated: [(&str, bool, &[Kind], &str); 7] = [
+            ("--resolution", reading.resolution.is_some(), &[Image], "an image alone"),
+            ("--specks", reading.specks.is_some(), &[Image, Cells], "maps of cells"),
+            ("--planar", reading.planar, &[OnEarth], "GeoJSON and OpenStreetMap"),
+            ("--level", reading.level.is_some(), &[Features, OnEarth], "maps of features"),
+            ("--wall", !reading.walls.is_empty(), &[Features, OnEarth], "maps of features"),
+            ("--floor", !reading.floors.is_empty(), &[Features, OnEarth], "maps of features"),
+            (
+                "--wall-width",
+                reading.wall_width.is_some(),
+                &[Drawing, Features, OnEarth],
+                "maps that are drawn",
+            ),
+        ];
+        let useless =
+            stated.iter().find(|(_, is_stated, kinds, _)| *is_stated && !kinds.contains(&self));
+        match useless {
+            Some((option, _, _, what)) => {
+                Err(format!("{option} is for {what}: leave it out for this map"))
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 /// A finite number: infinite ones and those that are none can be written, too.

@@ -268,7 +268,7 @@ pub struct ImportArguments {
     #[arg(long, value_name = "FILE", conflicts_with = "task")]
     pub tasks: Option<PathBuf>,
     /// How many tasks are put far from the access points where none are named
-    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    #[arg(long, value_name = "COUNT", default_value_t = 1, conflicts_with_all = ["task", "tasks"])]
     pub far_tasks: u16,
 }
 

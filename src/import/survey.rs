@@ -15,8 +15,22 @@ const DOOR_WIDTH: f64 = 1.0;
 /// The most points whose names are listed.
 const NAMES_LISTED: usize = 20;
 
+/// A property that makes features walls or floor must be one that some feature has.
+fn refuse_unmatched(features: &[Feature], reading: &Reading) -> Result<(), String> {
+    for (option, chosen) in [("--wall", &reading.walls), ("--floor", &reading.floors)] {
+        let is_met = |(key, value): &&(String, String)| {
+            features.iter().any(|feature| feature.properties.get(key) == Some(value))
+        };
+        if let Some((key, value)) = chosen.iter().find(|property| !is_met(property)) {
+            return Err(format!("{option} {key}={value}: no feature of the map has that property"));
+        }
+    }
+    Ok(())
+}
+
 /// The floor that features show on one level, with the places that they name.
 pub(super) fn plan(features: Vec<Feature>, reading: &Reading) -> Result<Plan, String> {
+    refuse_unmatched(&features, reading)?;
     let (features, mut notes) = Levels::of(&features).choose(features, reading.level.as_deref())?;
     let wall_width = reading.wall_width.unwrap_or(WALL_WIDTH);
     let (mut table, mut survey) = (Table::default(), Survey::default());

@@ -181,6 +181,8 @@ fn what_is_not_recognised_is_named_and_can_be_said() {
     );
     let said = Reading { walls: vec![("kind".into(), "table".into())], ..planar };
     assert_eq!(floor(&import::read(&map, &said).unwrap()), 77.0);
+    let mistyped = Reading { walls: vec![("kind".into(), "tables".into())], ..said };
+    assert!(refused(&map, &mistyped).contains("--wall kind=tables: no feature of the map has"));
 }
 
 #[test]
@@ -192,6 +194,26 @@ fn an_image_alone_needs_the_side_of_a_pixel() {
     let plan = import::read(path, &reading).unwrap();
     let with_keys = self::plan("flat.yaml", &super::of_the_flat());
     assert!((floor(&plan) - floor(&with_keys)).abs() < 1e-6);
+}
+
+#[test]
+fn what_would_have_no_effect_is_refused() {
+    let property = || vec![("kind".into(), "table".into())];
+    let none = Reading::default;
+    let refuses = |map: &str, reading: Reading, option: &str| {
+        let error = refused(&Path::new("tests/maps").join(map), &reading);
+        assert!(error.contains(&format!("{option} is for ")), "{map}: {error}");
+    };
+    refuses("flat.yaml", Reading { resolution: Some(0.05), ..none() }, "--resolution");
+    refuses("flat.yaml", Reading { planar: true, ..none() }, "--planar");
+    refuses("flat.yaml", Reading { level: Some("0".into()), ..none() }, "--level");
+    refuses("flat.pgm", Reading { walls: property(), ..none() }, "--wall");
+    refuses("flat.pgm", Reading { floors: property(), ..none() }, "--floor");
+    refuses("flat.pgm", Reading { wall_width: Some(0.2), ..none() }, "--wall-width");
+    let hall = feature(r#""kind": "floor""#, "Polygon", "[[[0, 0], [9, 0], [9, 9], [0, 9]]]");
+    let map = features("hall.geojson", &[&hall]);
+    let error = refused(&map, &Reading { specks: Some(3), ..none() });
+    assert!(error.contains("--specks is for maps of cells: leave it out for this map"), "{error}");
 }
 
 /// Specks as mapping programs leave them: single cells, some of them side by side.
