@@ -76,7 +76,7 @@ pub enum SkeletonError {
     Site(#[from] crate::automaton::network::SiteError),
     /// An access point stands outside the floor.
     #[error(
-        "the access point at ({}, {}) lies outside the floor, which reaches from ({}, {}) to \
+        "the access point at ({}, {}) is in a wall or outside the floor, which reaches from ({}, {}) to \
          ({}, {}): place it inside the outline and outside the walls",
         at[0], at[1], low[0], low[1], high[0], high[1]
     )]

@@ -405,7 +405,7 @@ fn an_access_point_outside_the_floor_is_told() {
     let outside = Spot::At([1000.0, 3.0]);
     let choices = Choices { access_points: vec![outside], ..Choices::named("cellar") };
     let error = import::skeleton(&plan, &choices).unwrap_err().to_string();
-    assert!(error.starts_with("the access point at (1000, 3) lies outside the floor"), "{error}");
+    assert!(error.starts_with("the access point at (1000, 3) is in a wall or outside"), "{error}");
 }
 
 #[test]
