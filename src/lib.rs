@@ -11,7 +11,8 @@
 //! # A control loop
 //!
 //! A room with a load that follows a table, heated by a PI controller that is sampled every 10 ms,
-//! saturates and unwinds its integral; its output takes effect 25 ms later:
+//! saturates and unwinds its integral. Each sample sends the output of the sample before, as a channel carries values as
+//! they were before the jump, and it takes effect 25 ms later:
 //!
 //! ```
 //! use pleach::prelude::*;

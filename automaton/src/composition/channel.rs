@@ -119,7 +119,8 @@ impl Channel {
     /// From the event `output` of a component, written `component.event`, to [held](Self::held)
     /// values: messages arrive without an event of a receiver. The channel is called after its output.
     ///
-    /// A controller samples, and its output takes effect a tenth of a second later:
+    /// A controller samples, and what it sends takes effect a tenth of a second later. Values are sent as they were before the
+    /// jump: a coordinate that the sample assigns arrives one sample later, a [signal](crate::Builder::signal) at once.
     ///
     /// ```
     /// use pleach_automaton::composition::Channel;
