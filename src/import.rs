@@ -248,7 +248,7 @@ fn extent(ring: &[[f64; 2]]) -> f64 {
 }
 
 /// A number of things in words.
-fn counted(count: usize, one: &str, many: &str) -> String {
+pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
@@ -297,43 +297,19 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Plan, ImportError> {
             return Err(malformed(format!("the {name} is {length}: it must be positive")));
         }
     }
-    let check = |kind: Kind| kind.check(reading).map_err(malformed);
-    let plan = match ending_of(path).as_str() {
-        "yaml" | "yml" => match yaml_of(path)? {
-            keys if building::is_one(&keys) => {
-                check(Kind::Features)?;
-                building::read(&keys, reading)
-            }
-            keys => {
-                check(Kind::Cells)?;
-                ros::read(path, &keys)?.trace(reading)
-            }
-        },
-        "map" => {
-            check(Kind::Cells)?;
-            moving_ai::read(&text()?).map_err(malformed)?.trace(reading)
-        }
-        "geojson" | "json" => {
-            check(Kind::OnEarth)?;
-            geojson::read(&text()?, reading)
-        }
-        "osm" => {
-            check(Kind::OnEarth)?;
-            osm::read(&text()?, reading)
-        }
-        "svg" => {
-            check(Kind::Drawing)?;
-            svg::read(&text()?, reading)
-        }
-        "dxf" => {
-            check(Kind::Features)?;
-            dxf(path, reading)
-        }
-        "png" | "pgm" | "pnm" | "ppm" | "pbm" | "bmp" | "jpg" | "jpeg" | "tif" | "tiff" => {
-            check(Kind::Image)?;
-            image::read(path, reading)?.trace(reading)
-        }
-        _ => return Err(ImportError::UnknownKind(path.into())),
+    let ending = ending_of(path);
+    let keys = if matches!(&*ending, "yaml" | "yml") { yaml_of(path)? } else { Value::Null };
+    let kind = Kind::of(&ending, &keys).ok_or_else(|| ImportError::UnknownKind(path.into()))?;
+    kind.check(reading).map_err(malformed)?;
+    let plan = match kind {
+        Kind::Building => building::read(&keys, reading),
+        Kind::Ros => ros::read(path, &keys)?.trace(reading),
+        Kind::MovingAi => moving_ai::read(&text()?).map_err(malformed)?.trace(reading),
+        Kind::GeoJson => geojson::read(&text()?, reading),
+        Kind::OpenStreetMap => osm::read(&text()?, reading),
+        Kind::Svg => svg::read(&text()?, reading),
+        Kind::Dxf => dxf(path, reading),
+        Kind::Image => image::read(path, reading)?.trace(reading),
     };
     Ok(plan.map_err(malformed)?.near_the_origin())
 }
@@ -347,36 +323,54 @@ fn dxf(_: &Path, _: &Reading) -> Result<Plan, String> {
         .into())
 }
 
-/// Kinds of map, by what can be stated of how they are read.
+/// Kinds of map.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
+    Building,
+    Ros,
+    MovingAi,
+    GeoJson,
+    OpenStreetMap,
+    Svg,
+    Dxf,
     Image,
-    Cells,
-    Drawing,
-    Features,
-    OnEarth,
 }
 
 impl Kind {
+    /// The kind of a file with this ending and, if it is YAML, these keys.
+    fn of(ending: &str, keys: &Value) -> Option<Self> {
+        Some(match ending {
+            "yaml" | "yml" if building::is_one(keys) => Kind::Building,
+            "yaml" | "yml" => Kind::Ros,
+            "map" => Kind::MovingAi,
+            "geojson" | "json" => Kind::GeoJson,
+            "osm" => Kind::OpenStreetMap,
+            "svg" => Kind::Svg,
+            "dxf" => Kind::Dxf,
+            "png" | "pgm" | "pnm" | "ppm" | "pbm" | "bmp" | "jpg" | "jpeg" | "tif" | "tiff" => {
+                Kind::Image
+            }
+            _ => return None,
+        })
+    }
+
     /// Refuses what is stated and would have no effect.
     fn check(self, reading: &Reading) -> Result<(), String> {
-        use Kind::{Cells, Drawing, Features, Image, OnEarth};
-        let stated: [(&str, bool, &[Kind], &str); 7] = [
-            ("--resolution", reading.resolution.is_some(), &[Image], "an image alone"),
-            ("--specks", reading.specks.is_some(), &[Image, Cells], "maps of cells"),
-            ("--planar", reading.planar, &[OnEarth], "GeoJSON and OpenStreetMap"),
-            ("--level", reading.level.is_some(), &[Features, OnEarth], "maps of features"),
-            ("--wall", !reading.walls.is_empty(), &[Features, OnEarth], "maps of features"),
-            ("--floor", !reading.floors.is_empty(), &[Features, OnEarth], "maps of features"),
-            (
-                "--wall-width",
-                reading.wall_width.is_some(),
-                &[Drawing, Features, OnEarth],
-                "maps that are drawn",
-            ),
+        use Kind::{Building, Dxf, GeoJson, Image, MovingAi, OpenStreetMap, Ros, Svg};
+        let is_of_cells = matches!(self, Ros | MovingAi | Image);
+        let is_on_earth = matches!(self, GeoJson | OpenStreetMap);
+        let has_features = is_on_earth || matches!(self, Building | Dxf);
+        let is_drawn = has_features || self == Svg;
+        let stated = [
+            ("--resolution", reading.resolution.is_some(), self == Image, "an image alone"),
+            ("--specks", reading.specks.is_some(), is_of_cells, "maps of cells"),
+            ("--planar", reading.planar, is_on_earth, "GeoJSON and OpenStreetMap"),
+            ("--level", reading.level.is_some(), has_features, "maps of features"),
+            ("--wall", !reading.walls.is_empty(), has_features, "maps of features"),
+            ("--floor", !reading.floors.is_empty(), has_features, "maps of features"),
+            ("--wall-width", reading.wall_width.is_some(), is_drawn, "maps that are drawn"),
         ];
-        let useless =
-            stated.iter().find(|(_, is_stated, kinds, _)| *is_stated && !kinds.contains(&self));
+        let useless = stated.iter().find(|(_, is_stated, has_use, _)| *is_stated && !has_use);
         match useless {
             Some((option, _, _, what)) => {
                 Err(format!("{option} is for {what}: leave it out for this map"))

@@ -13,6 +13,7 @@ use serde_json::json;
 
 use super::output;
 use super::status::{Failure, Status};
+use crate::import::counted;
 
 /// The arguments of `pleach reach`.
 #[derive(Debug, Args)]
@@ -191,13 +192,10 @@ fn verdict(problem: &Problem, solution: &Solution, seconds: f64) -> String {
             }
         }
     }
-    let (sets, visits) = (counted(sets, "set"), counted(visits(solution).count(), "visit"));
+    let sets = counted(sets, "set", "sets");
+    let visits = counted(visits(solution).count(), "visit", "visits");
     lines.push(format!("  {sets} in {visits}, {seconds:.3} s"));
     lines.join("\n")
-}
-
-fn counted(count: usize, one: &str) -> String {
-    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
 }
 
 fn visits(solution: &Solution) -> impl Iterator<Item = &pleach::verify::reach::Visit> {

@@ -21,7 +21,7 @@ const COUNT: u32 = 4096;
 /// How often, since what else runs on the machine leaves little in the caches.
 const RUNS: usize = 25;
 
-/// What a run of so many events or ticks ends with.
+/// The final value of a run of this many events or ticks.
 type Run<'a> = Box<dyn Fn(u32) -> f64 + 'a>;
 
 /// What a library takes for events or ticks.

@@ -37,7 +37,7 @@ const REASONS: &[([&str; 4], &str)] = &[
     (["duty", "waiting on the path", "leaf kept", ""], "Σ is given up while a leaf waits on it"),
     (
         ["exchange", "refusing", "refusal in vain", ""],
-        "the mover stops before it hears that it is refused: a unit test takes it",
+        "the mover stops before it receives the refusal: a unit test takes it",
     ),
     (["exchange", "", "refus", ""], "follows a refusal; taken by `explore -- thorough`"),
     (

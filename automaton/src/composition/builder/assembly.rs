@@ -17,7 +17,7 @@ impl CompositionBuilder {
         let others = std::mem::take(&mut self.samplers);
         for (number, sampler) in own.into_iter().chain(others).enumerate() {
             let is_own = number < clocks;
-            // What happens in an automaton by itself goes by the names of the automaton.
+            // Where there is one automaton, its clocks use its own names.
             let brief = sampler.event.strip_prefix(&*self.parts[0].name);
             let brief = brief.and_then(|it| it.strip_prefix('.')).filter(|_| alone && is_own);
             let (label, _) = self.end_of_channel(&sampler.event, brief)?;

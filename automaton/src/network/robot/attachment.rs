@@ -208,18 +208,15 @@ impl Robot {
             return None;
         }
         let limit = self.hard_length() * (1.0 + ROUNDING);
-        let leads_elsewhere = |lineage: &Lineage| {
-            let leads_through_lost = match lost {
-                Some(Anchor::Post(lost)) => lineage.contains(lost),
-                Some(Anchor::Access(lost)) => lineage.root() == lost,
-                None => false,
-            };
-            !lineage.contains(post) && !leads_through_lost && self.confirms(lineage)
+        let leads_through_lost = |lineage: &Lineage| match lost {
+            Some(Anchor::Post(lost)) => lineage.contains(lost),
+            Some(Anchor::Access(lost)) => lineage.root() == lost,
+            None => false,
         };
         let ways = self.neighbours.iter().filter_map(|neighbour| {
             let lineage = neighbour.beacon.lineage.as_ref()?;
-            let usable = self.may_attach_to(neighbour)
-                && leads_elsewhere(lineage)
+            let usable = self.may_bear(post, neighbour)
+                && !leads_through_lost(lineage)
                 && self.walk_to(neighbour) <= limit;
             let order = (!self.is_confirmed(neighbour), lineage.hops());
             self.anchor_of(neighbour).filter(|_| usable).map(|anchor| (order, anchor))
@@ -356,11 +353,9 @@ impl Robot {
             if better
                 && admits(neighbour)
                 && neighbour.distance <= self.build_length() * (1.0 + ROUNDING)
-                && self.may_attach_to(neighbour)
-                && !lineage.contains(own)
                 && avoided.is_none_or(|avoided| !lineage.contains(avoided))
+                && self.may_bear(own, neighbour)
                 && self.may_link(neighbour)
-                && self.confirms(lineage)
             {
                 best = Some((hops, neighbour.reliability, anchor));
             }

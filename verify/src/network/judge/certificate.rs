@@ -179,7 +179,7 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt], now: &Snapshot) -> Complain
     }
 }
 
-/// Who called when, and that every robot outside of its team is stated of.
+/// Who called when, and that every robot outside of its team is listed.
 fn is_call(attempt: &Attempt, trial: &Trial) -> Complaint {
     let robots = trial.snapshot.roles.len();
     let root = tree_of(trial.caller, &trial.snapshot).map(|access_point| robots + access_point);
