@@ -13,8 +13,10 @@ const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
 const ROBOT: &str = "automaton/src/network/robot/mod.rs";
 const ROBOT_PARTNER: &str = "automaton/src/network/robot/partner.rs";
 const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
-const ROBOT_RESERVATION: &str = "automaton/src/network/robot/reservation.rs";
-const ROBOT_ROUTING: &str = "automaton/src/network/robot/routing.rs";
+const ROBOT_RESERVATION: &str = "automaton/src/network/robot/reservation/mod.rs";
+const ROBOT_HELD: &str = "automaton/src/network/robot/reservation/held.rs";
+const ROBOT_KEPT: &str = "automaton/src/network/robot/reservation/kept.rs";
+const ROBOT_ITERATION: &str = "automaton/src/network/robot/routing/iteration.rs";
 const CELL: &str = "continuous/src/geometry/cell.rs";
 const ACCEPTANCE: &str = "continuous/src/network/acceptance.rs";
 const MOTION: &str = "continuous/src/network/motion/mod.rs";
@@ -50,8 +52,8 @@ pub const USES: &[Use] = &[
         "automaton/src/network/robot/hearing.rs",
         "site.link.reliability(distance)",
     ),
-    ("new", DUAL, ROBOT_ROUTING, "DualState::new("),
-    ("multiplier", DUAL, ROBOT_ROUTING, "state.multiplier()"),
+    ("new", DUAL, ROBOT_ITERATION, "DualState::new("),
+    ("multiplier", DUAL, ROBOT_ITERATION, "state.multiplier()"),
     ("projected", DUAL, DUAL, "multiplier: projected(extrapolated)"),
     ("projected", DUAL, DUAL, "projected(multiplier - step * (residual - reserve))"),
     ("positive_part", LOCAL, LOCAL, "positive_part((link.value(multiplier) - budget_price)"),
@@ -106,16 +108,16 @@ pub const USES: &[Use] = &[
     ("last_break_point", PATH, ROBOT_FACTS, "shift.path.last_break_point()"),
     ("subgroups", PATH, ROBOT_PATH, "subgroups(&points)"),
     ("places", PATH, ROBOT_PATH, "agreement.have_arrived(subgroup.places())"),
-    ("of", RESERVATION, ROBOT_RESERVATION, "Spare::of(self.lasting_outflow("),
-    ("most", RESERVATION, ROBOT_RESERVATION, "spare.most(before, kept.wanted)"),
-    ("grant", RESERVATION, ROBOT_RESERVATION, "spare.grant(before, flow)"),
-    ("flow", RESERVATION, ROBOT_RESERVATION, "kept.lease.flow()"),
+    ("of", RESERVATION, ROBOT_KEPT, "Spare::of(terms.spare)"),
+    ("most", RESERVATION, ROBOT_KEPT, "spare.most(before, self.wanted)"),
+    ("grant", RESERVATION, ROBOT_KEPT, "spare.grant(before, flow)"),
+    ("flow", RESERVATION, ROBOT_KEPT, "kept.lease.flow()"),
     ("part", RESERVATION, ROBOT_RESERVATION, "lease.part().map("),
-    ("lasting", RESERVATION, ROBOT_RESERVATION, "self.flow.min(self.lease.lasting(period))"),
-    ("promise", RESERVATION, ROBOT_RESERVATION, "lease.promise(before, until)"),
-    ("hear", RESERVATION, ROBOT_RESERVATION, "held.lease.hear(kept)"),
-    ("limit", RESERVATION, ROBOT_RESERVATION, "held.lease.limit(held.flow)"),
-    ("pass", RESERVATION, ROBOT_RESERVATION, "held.lease.pass(period)"),
+    ("lasting", RESERVATION, ROBOT_HELD, "self.flow.min(self.lease.lasting(period))"),
+    ("promise", RESERVATION, ROBOT_KEPT, "lease.promise(before, terms.until)"),
+    ("hear", RESERVATION, ROBOT_HELD, "held.lease.hear(kept)"),
+    ("limit", RESERVATION, ROBOT_HELD, "self.lease.limit(self.flow)"),
+    ("pass", RESERVATION, ROBOT_HELD, "held.lease.pass(period)"),
     ("MISSION", "discrete/src/network/tables.rs", ROBOT_MISSION, "Automaton::builder(MISSION,"),
     ("between_margins", CROSSING, FOR_USERS, ""),
     ("update", CROSSING, FOR_USERS, ""),

@@ -13,6 +13,7 @@ use pleach_discrete::network::{Bid, Confirmation, IdSet, NodeId, NoticeId, PostI
 
 use super::facts::STATIONARY_WINDOW;
 use super::hearing::PATIENCE_WITH_CHILDREN;
+use super::revision::Stamp;
 use super::{FIRST_NEW_POST, POSTS_OF_A_PERIOD, Robot, RobotError, RobotView};
 use crate::network::beacon::Beacon;
 use crate::network::duty::Path;
@@ -132,9 +133,10 @@ impl Robot {
     /// out is not told by its [`account`](Self::account).
     pub fn leaves_out_nothing(&self) -> bool {
         let (beacon, told) = (self.public_state(), self.last_beacon.get());
-        (self.has_news || self.overlooked().is_none())
-            && (self.has_unsent_news || told.is_none_or(|told| *told == beacon))
-            && (self.is_unmeasured || self.facts_stand())
+        let is_new = |stamp: Stamp| !stamp.is_of(self.revision);
+        (is_new(self.processed_at) || self.overlooked().is_none())
+            && (is_new(self.compared_at) || told.is_none_or(|told| *told == beacon))
+            && (is_new(self.measured_at) || self.facts_stand())
     }
 
     /// The next round counts as the first one of a control period, in which all robots send.
@@ -270,9 +272,10 @@ impl Robot {
             facts: _,
             is_quiet: _,
             forgotten_offers: _, // by its offers
-            has_news: _,
-            has_unsent_news: _,
-            is_unmeasured: _,
+            revision: _,
+            processed_at: _,
+            compared_at: _,
+            measured_at: _,
             last_beacon: _,
             period: _,
             heard_up_to: _,
@@ -300,33 +303,7 @@ impl Robot {
             velocity: _,
             clock: _,
             routing: _,
-            links: _,
-            link_terms: _,
-            flows: _,
-            upstream: _,
-            expected_link: _,
-            dual_step_size: _,
-            told_report: _,
-            told_outflow: _,
-            inflow: _,
-            inflows: _,
-            demands: _,
-            residual: _,
-            reservations: _,
-            last_request: _,
-            leases_wait: _,
-            circles: _,
-            has_flow_news: _,
-            has_swept: _,
-            demands_passed_on: _,
-            has_no_reserve: _,
-            has_shortage_news: _,
-            routes_fall_short: _,
-            has_untold_flows: _,
-            has_new_multipliers: _,
-            has_come_to_rest: _,
-            links_stand: _,
-            is_unsettled: _,
+            reservation: _,
             destination: _,
             target: _, // by the announcement
             waypoint: _,

@@ -11,6 +11,7 @@ use pleach_guards::{Guard, network::control as guards};
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Flow, Transfer};
 
+use super::context::context;
 use super::{Robot, RobotError};
 use crate::network::act::{self, acting};
 use crate::network::control::{
@@ -148,17 +149,17 @@ impl Robot {
                 }
                 self.survey_links();
             }
-            Act::TellFlows => self.tell_flows(outputs),
-            Act::BeginRoutes => self.begin_routing(),
-            Act::TellMultiplier => self.tell_multiplier(outputs),
-            Act::StepPrimal => self.primal_step(),
-            Act::StepDual => self.dual_step(),
+            Act::TellFlows => self.routing.send_flows(context!(self), outputs),
+            Act::BeginRoutes => self.routing.begin(context!(self)),
+            Act::TellMultiplier => self.routing.send_report(outputs),
+            Act::StepPrimal => self.routing.primal_step(context!(self)),
+            Act::StepDual => self.routing.dual_step(context!(self)),
             Act::CountRounds => self.round_count.restart(),
-            Act::BeginSweep => self.begin_sweep(outputs),
-            Act::EndSweep => self.end_sweep(),
-            Act::SettleResidual => self.settle_residual(),
-            Act::AdmitShortage => self.admit_shortage(outputs),
-            Act::SweepAgain => self.sweep_again(outputs),
+            Act::BeginSweep => self.routing.begin_sweep(context!(self), outputs),
+            Act::EndSweep => self.routing.end_sweep(context!(self)),
+            Act::SettleResidual => self.routing.settle_residual(context!(self)),
+            Act::AdmitShortage => self.routing.admit_shortage(context!(self), outputs),
+            Act::SweepAgain => self.routing.sweep_again(context!(self), outputs),
             Act::AskForFlows => self.ask_for_flows(outputs),
             Act::SettleFlows => self.take_in_requests(outputs),
             Act::EndRoutes => self.end_routes(),

@@ -293,7 +293,7 @@ facts! {
 impl Robot {
     /// Measures the facts; returns whether a guard may hold that did not hold before.
     pub(super) fn measure(&mut self) -> bool {
-        if !std::mem::take(&mut self.is_unmeasured) && self.caches() {
+        if !self.measured_at.renew(self.revision) && self.caches() {
             debug_assert!(self.may_skip(Self::facts_stand), "robot {} goes by old facts", self.id);
             return false;
         }

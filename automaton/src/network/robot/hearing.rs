@@ -79,7 +79,7 @@ pub(super) const PATIENCE_WITH_CHILDREN: u32 = 8;
 
 impl Neighbour {
     /// A node as heard from `own`.
-    fn new(
+    pub fn new(
         beacon: &Arc<Beacon>,
         confirmed: Option<u32>,
         period: u32,
@@ -191,7 +191,9 @@ impl Robot {
             && known.measured_at == self.position
         {
             let is_back = known.note_heard(period, self.period);
-            self.has_news |= is_back || self.awaits_confirmation && known.confirmed < confirmed;
+            if is_back || self.awaits_confirmation && known.confirmed < confirmed {
+                self.revision.advance();
+            }
             known.confirmed = known.confirmed.max(confirmed);
             self.heard_up_to += 1;
         } else {
@@ -210,7 +212,7 @@ impl Robot {
                 self.neighbours.insert(at, neighbour);
                 self.find(beacon.sender);
                 self.note_branches(beacon, period);
-                self.receive_news();
+                self.note_change();
             }
         }
         let (Ok(at) | Err(at)) = known;
@@ -234,14 +236,16 @@ impl Robot {
             Neighbour { beacon: Arc::clone(beacon), confirmed, ..known.clone() }
         } else {
             known.confirmed = confirmed;
-            self.has_news |= is_back || self.awaits_confirmation && is_newer;
+            if is_back || self.awaits_confirmation && is_newer {
+                self.note_change();
+            }
             return;
         };
         self.neighbours.replace(at, renewed);
         if !is_same {
             self.note_branches(beacon, period);
         }
-        self.receive_news();
+        self.note_change();
     }
 
     /// A round of beacons is over. In the first rounds of a period all robots send; only in these is
@@ -282,15 +286,15 @@ impl Robot {
         let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
         let is_gone = is_silent && self.is_gone(id);
-        let is_out_of_sight = (is_lost && !is_kept || is_gone) && !self.sends_to(id);
+        let is_out_of_sight = (is_lost && !is_kept || is_gone) && !self.reservation.sends_to(id);
         if is_out_of_sight || reliability <= 0.0 {
             let lost = self.neighbours.remove(at);
             self.lose_sight_of(&lost);
-            self.receive_news();
+            self.note_change();
             return at;
         }
         if has_moved || was_heard || is_silent && !was_silent {
-            self.receive_news();
+            self.note_change();
         }
         at + 1
     }
@@ -326,11 +330,6 @@ impl Robot {
     /// The beacon that the robot goes by of each of its neighbours, ascending.
     pub(super) fn held_beacons(&self) -> impl Iterator<Item = &Arc<Beacon>> {
         self.neighbours.iter().map(|neighbour| &neighbour.beacon)
-    }
-
-    /// What the robot hears has changed.
-    pub(super) fn receive_news(&mut self) {
-        (self.has_news, self.is_unmeasured, self.links_stand) = (true, true, false);
     }
 
     /// The geodesic length of the link to a neighbour.

@@ -17,8 +17,8 @@ mod absence;
 mod abstraction;
 mod attachment;
 mod bodies;
-mod circles;
 mod confirmation;
+mod context;
 mod control;
 mod duties;
 mod exchange;
@@ -33,8 +33,10 @@ mod negotiation;
 mod neighbours;
 mod partner;
 mod path;
+mod places;
 mod recruit;
 mod reservation;
+mod revision;
 mod rounds;
 mod routing;
 mod skipped_work;
@@ -53,7 +55,6 @@ use std::sync::Arc;
 use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
-use pleach_continuous::network::routing::adal::NeighbourReport;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
     Agreement, Anchor, Bid, Confirmation, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId,
@@ -62,7 +63,6 @@ use pleach_discrete::network::{
 
 #[cfg(feature = "abstraction")]
 pub(super) use abstraction::Numbers;
-pub use circles::Probe;
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use exchange::{Exchange, ExchangeAutomaton, ExchangeEffect, exchange_automaton};
@@ -70,7 +70,7 @@ pub use facts::{Facts, GLOSSARY};
 pub use lineage::{AttachmentAutomaton, PlaceInTree, attachment_automaton};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
-pub use reservation::{FlowGrant, FlowRequest, GrantedPart, RequestNumber};
+pub use reservation::{FlowGrant, FlowRequest, GrantedPart, Probe, RequestNumber};
 pub use routing::RouteLink;
 pub use step::{RobotError, RobotFault};
 pub use target::{Targets, targets};
@@ -94,15 +94,18 @@ use super::shared::Shared;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use bodies::Bodies;
-use circles::Circles;
+use context::context;
 use duties::Label;
+use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
 use neighbours::Neighbours;
 use partner::{Answered, PastOffers};
-use reservation::{HeldFlow, Reservation};
+use places::places;
+use reservation::{Plan, Reservation, lease_of};
+use revision::{Revision, Stamp};
 use rounds::Rounds;
-use routing::LinkTerms;
+use routing::{Receiver, Routing, Survey};
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
 const FIRST_NEW_POST: u32 = 1 << 31;
@@ -132,10 +135,12 @@ pub struct Robot {
     round_count: Rounds,
     acts: Acts,
 
-    // What has changed since it last processed messages, sent its beacon and measured its facts.
-    has_news: bool,
-    has_unsent_news: bool,
-    is_unmeasured: bool,
+    /// How often its own state, or what it has received, has changed.
+    revision: Revision,
+    /// When it last processed messages, compared its beacon and measured its facts.
+    processed_at: Stamp,
+    compared_at: Stamp,
+    measured_at: Stamp,
     /// Another parent would be better, and is not confirmed yet.
     awaits_confirmation: bool,
     /// Another node has begun the next control period.
@@ -145,22 +150,6 @@ pub struct Robot {
     /// Whether this is its first period.
     is_new: bool,
     is_quiet: bool,
-    has_flow_news: bool,
-    has_swept: bool,
-    has_no_reserve: bool,
-    has_shortage_news: bool,
-    /// Its routes of the period before do not carry the rates.
-    routes_fall_short: bool,
-    has_untold_flows: bool,
-    /// A multiplier has changed, its own or a neighbour's, since it chose its shares.
-    has_new_multipliers: bool,
-    /// The last dual step has changed nothing. ADAL does not come to rest.
-    has_come_to_rest: bool,
-    /// Its links are those that it would find now.
-    links_stand: bool,
-    is_unsettled: bool,
-    /// Leases of its flows were about to end when the reservation of this period began.
-    leases_wait: bool,
     must_judge_moves: bool,
 
     id: NodeId,
@@ -170,33 +159,10 @@ pub struct Robot {
     /// What it reports to observers; no robot reads it.
     log: Vec<MissionEvent>,
 
-    // Its routes.
-    links: Vec<RouteLink>,
-    link_terms: Vec<LinkTerms>,
-    /// The link whose other end is expected to tell its multiplier next.
-    expected_link: usize,
-    routing: routing::RoutingState,
-    /// ε of (14) over its links in this period.
-    dual_step_size: f64,
-    /// How its equation stands, as it has told in this period.
-    told_report: Option<NeighbourReport>,
-    /// What it sends over them in all, as it has told last.
-    told_outflow: f64,
-    /// The parent to which it sends its demand in this period.
-    upstream: Option<NodeId>,
+    /// r_i.
     rate: f64,
-    inflow: f64,
-    residual: f64,
-    inflows: Vec<(NodeId, f64)>,
-    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
-    /// of it.
-    demands: Vec<(NodeId, Option<f64>)>,
-    /// In this sweep.
-    demands_passed_on: usize,
-    /// Its flows in use, and those that it has asked for.
-    flows: Vec<HeldFlow>,
-    reservations: Vec<Reservation>,
-    last_request: RequestNumber,
+    routing: Routing,
+    reservation: Reservation,
 
     // Where robots were that it does not hear any more or has only heard of, those that do not take part,
     // and those that are attached to it.
@@ -284,9 +250,6 @@ pub struct Robot {
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
 
-    /// The circles of flows that it is part of.
-    circles: Circles,
-
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
@@ -334,9 +297,10 @@ impl Robot {
             mission: Current::new(Mission::Idle(Idle)),
             facts: Facts::default(),
             is_quiet: false,
-            has_news: true,
-            has_unsent_news: true,
-            is_unmeasured: true,
+            revision: Revision::FIRST,
+            processed_at: Stamp::default(),
+            compared_at: Stamp::default(),
+            measured_at: Stamp::default(),
             last_beacon: LastBeacon::default(),
             exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
             forgotten_offers: 0,
@@ -386,34 +350,8 @@ impl Robot {
             stretched: false,
             longest_wait: 0,
             followed_post: None,
-            routing: routing::RoutingState::new(site.settings.routing_method),
-            links: Vec::new(),
-            link_terms: Vec::new(),
-            flows: Vec::new(),
-            dual_step_size: 0.0,
-            told_report: None,
-            told_outflow: 0.0,
-            upstream: None,
-            expected_link: 0,
-            inflow: 0.0,
-            inflows: Vec::new(),
-            demands: Vec::new(),
-            residual: 0.0,
-            reservations: Vec::new(),
-            last_request: RequestNumber::default(),
-            has_flow_news: false,
-            has_swept: false,
-            demands_passed_on: 0,
-            has_no_reserve: false,
-            has_shortage_news: false,
-            routes_fall_short: false,
-            has_untold_flows: false,
-            has_new_multipliers: false,
-            has_come_to_rest: false,
-            links_stand: false,
-            is_unsettled: true,
-            leases_wait: false,
-            circles: Circles::default(),
+            routing: Routing::new(site.settings.routing_method),
+            reservation: Reservation::default(),
             destination: None,
             waypoint: None,
             goes_by_link: false,
@@ -498,7 +436,7 @@ impl Robot {
     /// The beacon that the robot sends now: the very same as before unless something
     /// in it has changed.
     fn next_beacon(&mut self) -> Arc<Beacon> {
-        if !std::mem::take(&mut self.has_unsent_news)
+        if !self.compared_at.renew(self.revision)
             && self.caches()
             && let Some(beacon) = self.last_beacon.get()
         {
@@ -507,7 +445,9 @@ impl Robot {
             return beacon;
         }
         let (beacon, is_new) = self.last_beacon.replace_by(self.public_state());
-        self.has_news |= is_new;
+        if is_new {
+            self.note_change();
+        }
         beacon
     }
 
@@ -595,7 +535,7 @@ impl Robot {
 
     /// Processes what it has received if that contains news, or if it is due anyway.
     fn process_news(&mut self, is_due: bool) -> Result<(), TransitionError> {
-        if !std::mem::take(&mut self.has_news) && !is_due && self.caches() {
+        if !self.has_news() && !is_due && self.caches() {
             #[cfg(feature = "abstraction")]
             debug_assert_eq!(
                 self.is_looked_at().then(|| self.overlooked()).flatten(),
@@ -610,7 +550,8 @@ impl Robot {
 
     /// Processes what it has received, whether or not it contains news.
     fn process_messages(&mut self) -> Result<(), TransitionError> {
-        (self.has_unsent_news, self.is_unmeasured, self.links_stand) = (true, true, false);
+        self.note_change();
+        self.processed_at.renew(self.revision);
         self.advance_exchange()?;
         self.locate_wrecks();
         self.locate_branches();
@@ -637,10 +578,70 @@ impl Robot {
         Ok(jumped)
     }
 
-    /// The robot's state has changed: it has to deliberate, to send its state, to measure its facts and to find its links.
+    /// The robot's own state, or what it has received, has changed: it has to deliberate, to compare its beacon, to measure
+    /// its facts and to find its links.
     fn note_change(&mut self) {
-        (self.has_news, self.has_unsent_news) = (true, true);
-        (self.is_unmeasured, self.links_stand) = (true, false);
+        self.revision.advance();
+    }
+
+    /// Whether something has changed since it last processed messages.
+    fn has_news(&self) -> bool {
+        !self.processed_at.is_of(self.revision)
+    }
+
+    /// A control period's routes begin: with the links over which the robot may send from here, and with what the routing
+    /// method made of them in the period before. Links that have been found stand until something changes.
+    fn survey_links(&mut self) {
+        if self.caches() && self.routing.has_links_of(self.revision) {
+            let is_right =
+                |robot: &Self| robot.routing.would_find(context!(robot), &robot.survey());
+            debug_assert!(self.may_skip(is_right), "robot {}: old links", self.id);
+        } else {
+            let survey = self.survey();
+            self.routing.find_links(context!(self), &survey, self.revision);
+            let Robot { routing, reservation, .. } = self;
+            reservation.drop_flows_without_link(|node| routing.has_link_to(node));
+        }
+        self.routing.begin_period();
+    }
+
+    /// The neighbours to which there may be links, and the parent, as they are now.
+    fn survey(&self) -> Survey {
+        let tree = self.tree_links();
+        let receiver = |neighbour: &Neighbour| Receiver {
+            node: neighbour.id(),
+            distance: neighbour.distance,
+            reliability: neighbour.reliability,
+            in_tree: tree.iter().any(|link| link.to == neighbour.id()),
+            has_flow: self.reservation.sends_to(neighbour.id()),
+        };
+        let receivers = self.neighbours.iter().map(receiver).collect();
+        Survey { parent: self.tree_parent(), receivers }
+    }
+
+    /// The plan of the period stands: the robot asks for its flows.
+    fn ask_for_flows(&mut self, outputs: &mut NodeOutputs) {
+        let (lease, places) = (lease_of(self.longest_wait()), places!(self));
+        let plans = self.routing.links().iter().map(|link| Plan {
+            to: link.to,
+            reliability: link.reliability,
+            flow: link.flow(),
+        });
+        self.reservation.ask_for_flows(context!(self), plans, &places, lease, outputs);
+    }
+
+    /// Takes in the requests and grants of the round.
+    fn take_in_requests(&mut self, outputs: &mut NodeOutputs) {
+        let lease = lease_of(self.longest_wait());
+        self.reservation.take_in_requests(context!(self), lease, outputs);
+    }
+
+    /// The routes of the period stand. That they do not carry the rates is reported when it begins.
+    fn end_routes(&mut self) {
+        let (flows, context) = (&self.reservation, context!(self));
+        if self.routing.adopt(context, flows.loads(), flows.outflow(), flows.granted()) {
+            self.report(MissionEvent::RouteInfeasible { robot: self.id });
+        }
     }
 
     /// A control period begins or ends: its state has changed with that, unless nothing depends on it.

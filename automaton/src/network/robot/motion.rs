@@ -4,12 +4,14 @@
 //! solution. What becomes of the proposal is told in `negotiation`.
 
 use pleach_continuous::geometry::{Disc, HalfPlane, cell};
+use pleach_continuous::network::LinkReliability as _;
 use pleach_continuous::network::acceptance::{FULL_LOAD, Segment};
 use pleach_continuous::network::motion::{Motion, MotionProblem};
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::Phase;
 
 use super::Robot;
+use super::context::context;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
 use crate::automaton::TransitionError;
@@ -138,7 +140,7 @@ impl Robot {
             }
             return;
         };
-        if self.is_infeasible() || !self.may_leave_place() {
+        if self.routing.is_infeasible(context!(self)) || !self.may_leave_place() {
             return;
         }
         let Some(waypoint) = self.first_waypoint(goal) else { return };
@@ -232,11 +234,11 @@ impl Robot {
     /// the sender, to first order.
     fn linearised_load(&self) -> Option<HalfPlane> {
         let mut gradient = Vector::zeros();
-        for link in self.routes() {
+        for link in self.routing.routes() {
             let Some(receiver) = self.neighbour(link.to) else { continue };
             if receiver.distance > 0.0 {
                 let direction = (self.position - receiver.position()) / receiver.distance;
-                let slope = -self.slope_at(receiver.distance) / link.reliability;
+                let slope = -self.site.link.slope(receiver.distance) / link.reliability;
                 gradient += direction * (link.share * slope);
             }
         }
@@ -245,7 +247,7 @@ impl Robot {
             return None;
         }
         let normal = gradient / steepness;
-        let room = (FULL_LOAD - self.load()).max(0.0) / steepness;
+        let room = (FULL_LOAD - self.routing.load()).max(0.0) / steepness;
         Some(HalfPlane::new(normal, normal.dot(&self.position.coords) + room))
     }
 

@@ -13,13 +13,14 @@
 //! be, and a robot that does not know where those are on which it relies consents to nothing and
 //! stays.
 
-use pleach_continuous::network::acceptance::{Capsule, Segment, is_acceptable};
+use pleach_continuous::network::acceptance::{Capsule, Segment, is_acceptable, worst_load_within};
 use pleach_discrete::network::consent::all_consent;
 use pleach_discrete::network::{NodeId, Stage};
 
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
+use super::places::places;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 use crate::network::roll::Wreck;
@@ -59,7 +60,9 @@ impl Robot {
         witness: Option<NodeId>,
     ) {
         self.out_of_sight.note(Wreck::setting_off(from, segment, self.period));
-        self.has_news |= self.roll.absent.contains(from);
+        if self.roll.absent.contains(from) {
+            self.note_change();
+        }
         let is_asked = self.relies_on(from) || witness == Some(self.id);
         if is_asked && !self.to_answer.contains(&from) {
             self.to_answer.push(from);
@@ -85,13 +88,13 @@ impl Robot {
     /// Whether the robot could be harmed by a move of this node: it sends to it, or may have to be
     /// told that it still may, or is attached to it in the tree.
     fn relies_on(&self, node: NodeId) -> bool {
-        self.has_asked(node) || self.tree_parent() == Some(node)
+        self.reservation.has_asked(node) || self.tree_parent() == Some(node)
     }
 
     /// The robots that rely on this one, as far as it knows: those to which it has granted a flow, and
     /// those that report that they are attached to it.
     fn reliant(&self) -> impl Iterator<Item = NodeId> {
-        self.senders().chain(self.tree_children().map(Neighbour::id))
+        self.reservation.senders().chain(self.tree_children().map(Neighbour::id))
     }
 
     /// The node that it asks to be the witness of its move, where nobody relies on it: its parent if that is
@@ -178,28 +181,13 @@ impl Robot {
 
     /// Whether it does not know where a robot is on which it relies.
     pub(super) fn is_unsure(&self) -> bool {
-        let mut relied_on = self.routes().map(|link| link.to).chain(self.tree_parent());
+        let mut relied_on = self.routing.routes().map(|link| link.to).chain(self.tree_parent());
         relied_on.any(|node| !self.knows_place_of(node))
     }
 
-    /// Whether a node on which this one relies is where it was heard last: it is an access point, it has been
-    /// heard in this control period, or it could not move since, because this robot sends to it and has not
-    /// consented.
+    /// Whether a node on which this one relies is where it was received last.
     pub(super) fn knows_place_of(&self, node: NodeId) -> bool {
-        if node >= self.site.robots {
-            return true;
-        }
-        let Ok(at) = self.neighbours.place_of(node) else { return false };
-        if self.heard_all_in == Some(self.period) && !self.is_behind {
-            let heard_in = self.neighbours[at].heard_in;
-            debug_assert_eq!(heard_in, self.period, "robot {} has not heard all", self.id);
-            return true;
-        }
-        let known = &self.neighbours[at];
-        let has_consented =
-            |&(mover, period): &(NodeId, u32)| mover == node && period >= known.heard_in;
-        known.heard_in == self.period
-            || self.sends_to(node) && !self.consented.iter().any(has_consented)
+        places!(self).are_known_of(node, self.reservation.sends_to(node))
     }
 
     /// Whether the robot neither proposes a move nor has heard of one that it has not answered.
@@ -225,7 +213,7 @@ impl Robot {
     }
 
     fn is_too_much(&self, worst: f64) -> bool {
-        !is_acceptable(worst, self.load() + ROUNDING)
+        !is_acceptable(worst, self.routing.load() + ROUNDING)
     }
 
     /// Its load at worst if these of the nodes to which it sends stay where they are.
@@ -240,10 +228,18 @@ impl Robot {
         })
     }
 
+    /// The worst load h_i whichever of the proposed moves are carried out, and wherever robots measure
+    /// themselves then.
+    fn worst_load(&self, own: Capsule, move_of: impl Fn(NodeId) -> Capsule) -> f64 {
+        let routes = self.routing.routes();
+        let receivers: Vec<_> = routes.map(|link| (link.flow(), move_of(link.to))).collect();
+        worst_load_within(own, &receivers, &self.site.link)
+    }
+
     /// The receivers whose moves add most to its load, as many as would have to stay for it not to be overloaded. A
     /// robot whose least move is too much, since the reliability of its link falls steeply there, holds up no other.
     fn overloading_movers(&self, own: Segment) -> Vec<NodeId> {
-        let receives = |mover: &NodeId| self.routes().any(|link| link.to == *mover);
+        let receives = |mover: &NodeId| self.routing.routes().any(|link| link.to == *mover);
         let movers = self.heard_moves.iter().map(|&(mover, _)| mover).filter(receives);
         let mut by_share: Vec<(f64, NodeId)> =
             movers.map(|mover| (self.worst_load_without(own, &[mover]), mover)).collect();

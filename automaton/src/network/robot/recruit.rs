@@ -336,7 +336,7 @@ impl Robot {
 
     /// The larger the residual, the better; ties go to the shorter path.
     fn recruit_bid(&self, rank: Rank, hops: usize) -> Bid {
-        let merit = (self.residual / RESIDUAL_RESOLUTION).round() as i64;
+        let merit = (self.routing.residual() / RESIDUAL_RESOLUTION).round() as i64;
         Bid { rank: rank as u8, merit, economy: -(hops as i64) }
     }
 

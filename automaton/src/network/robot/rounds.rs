@@ -7,6 +7,7 @@
 use pleach_discrete::network::Stage;
 
 use super::Robot;
+use super::context::context;
 use super::hearing::ROUNDS_TO_BE_HEARD;
 
 /// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
@@ -137,10 +138,10 @@ impl Robot {
         let (has_nothing_to_do, last) = match self.stage() {
             Stage::Beacons => (self.needs_no_round(), settings.rounds_per_period),
             Stage::Iterations => {
-                (self.shares_rest(), Rounds::of_iterations(settings.routing_iterations))
+                (self.routing.is_at_rest(), Rounds::of_iterations(settings.routing_iterations))
             }
-            Stage::Sweeps => (self.routes_stand(), Rounds::LAST_OF_SWEEPS),
-            Stage::Reserving => (!self.has_flow_news, self.next_of_reservation()),
+            Stage::Sweeps => (self.routing.routes_stand(context!(self)), Rounds::LAST_OF_SWEEPS),
+            Stage::Reserving => (!self.reservation.has_news(), self.next_of_reservation()),
             Stage::Negotiation => (self.has_no_moves_to_judge(), Rounds::LAST_OF_NEGOTIATION),
             _ => return 0,
         };
@@ -149,7 +150,7 @@ impl Robot {
 
     /// The round of the reservation in which the robot asks or looks for circles again, or the last one.
     fn next_of_reservation(&self) -> usize {
-        if self.requests_are_answered() && !self.leases_wait {
+        if !self.reservation.asks_again() {
             return RESERVATION;
         }
         let asked = self.round_count.times_asked_again();
@@ -160,6 +161,6 @@ impl Robot {
     /// silence or of an election.
     fn needs_no_round(&self) -> bool {
         let counts_silence = self.round_count.count() < ROUNDS_TO_BE_HEARD;
-        !self.has_news && self.last_beacon.is_told() && !counts_silence && !self.counts_rounds()
+        !self.has_news() && self.last_beacon.is_told() && !counts_silence && !self.counts_rounds()
     }
 }

@@ -4,18 +4,16 @@
 //!
 //! Skipping is right if the work would change nothing. [`without_caching`](super::super::scenario::ValidScenario::without_caching)
 //! switches it off, and missions are the same to the byte. Builds with debug assertions verify that for guards, facts,
-//! beacons, links and shares, in one control period in [`PERIODS_PER_CHECK`]; with the feature `abstraction` also for
+//! beacons, links and shares, in one control period in [`PERIODS_PER_CHECK`](super::context::PERIODS_PER_CHECK); with the feature `abstraction` also for
 //! messages, which are processed again on a copy. Explorers verify it in every state of a robot, but for shares and for
 //! periods that are like the one before: to them every period is new.
 
 use pleach_continuous::Vector;
 
 use super::Robot;
+use super::context::context;
 use crate::located::Place as _;
 use crate::network::duty::Duty;
-
-/// What is left out in missions is looked at in one control period in this many: it costs as much as doing it.
-const PERIODS_PER_CHECK: u32 = 4;
 
 impl Robot {
     /// Whether it keeps what it has derived.
@@ -25,7 +23,7 @@ impl Robot {
 
     /// Whether what is left out is looked at in this period.
     pub(super) fn is_looked_at(&self) -> bool {
-        self.period.is_multiple_of(PERIODS_PER_CHECK)
+        context!(self).verifies()
     }
 
     /// Whether something that would change nothing is left out, as far as it is looked at.
@@ -56,12 +54,6 @@ impl Robot {
     /// Whether its facts are as it has measured them, and no guard holds.
     pub(super) fn facts_stand(&self) -> bool {
         self.facts_now() == self.facts && self.is_at_rest()
-    }
-
-    /// Whether what it knows of its links for its balance and for the dual iteration is what these say.
-    pub(super) fn outflow_stands(&self) -> bool {
-        let known = [self.told_outflow, self.dual_step_size];
-        known.map(f64::to_bits) == [self.outflow(), self.safe_dual_step()].map(f64::to_bits)
     }
 
     /// Whether no transition of the mission or of its duty can be taken.

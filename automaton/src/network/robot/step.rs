@@ -12,6 +12,7 @@ use std::sync::Arc;
 use pleach_discrete::network::{NodeId, Stage};
 
 use super::Robot;
+use super::context::context;
 use crate::automaton::{InvariantError, TransitionError};
 use crate::located::Place as _;
 use crate::network::control::Control;
@@ -192,7 +193,9 @@ impl Robot {
                 self.hear_roll(roll);
                 self.hear_beacon(*period, *confirmed, beacon);
             }
-            Message::Probe(probe) => self.hear_probe(from, probe, outputs),
+            Message::Probe(probe) => {
+                self.reservation.receive_probe(context!(self), from, probe, outputs);
+            }
             _ if self.is_planning_routes() => self.hear_of_routes(from, message, outputs),
             _ => self.hear_of_flows_or_moves(from, message),
         }
@@ -206,10 +209,14 @@ impl Robot {
     #[inline(never)]
     fn hear_of_routes(&mut self, from: NodeId, message: &Message, outputs: &mut NodeOutputs) {
         match message {
-            Message::Multiplier { report, parent } => self.hear_multiplier(from, *report, *parent),
-            Message::Flow(flow) => self.hear_flow(from, *flow),
-            Message::Demand(more) => self.hear_demand(from, *more, outputs),
-            Message::Shortage => self.hear_shortage(from, outputs),
+            Message::Multiplier { report, parent } => {
+                self.routing.receive_report(context!(self), from, *report, *parent);
+            }
+            Message::Flow(flow) => self.routing.receive_flow(from, *flow),
+            Message::Demand(more) => {
+                self.routing.receive_demand(context!(self), from, *more, outputs);
+            }
+            Message::Shortage => self.routing.receive_shortage(from, outputs),
             _ => self.hear_of_flows_or_moves(from, message),
         }
     }
@@ -218,8 +225,12 @@ impl Robot {
     #[inline(never)]
     fn hear_of_flows_or_moves(&mut self, from: NodeId, message: &Message) {
         match message {
-            Message::AskFlow(request) => self.hear_request(from, *request),
-            Message::GrantFlow(grant) => self.hear_grant(from, *grant),
+            Message::AskFlow(request) => {
+                self.reservation.receive_request(context!(self), from, *request);
+            }
+            Message::GrantFlow(grant) => {
+                self.reservation.receive_grant(context!(self), from, *grant);
+            }
             Message::Proposal { period, .. }
             | Message::Objection { period }
             | Message::Consent { period }

@@ -336,6 +336,6 @@ impl Robot {
     /// shorter. What is left of its reserve does not tell that. Moves leave flows as they are, and with them c_i; and
     /// where messages are lost, flows in use lag behind the plan for some periods, and leave no reserve.
     fn is_saturated(&self) -> bool {
-        self.load() >= SATURATED
+        self.routing.load() >= SATURATED
     }
 }

@@ -142,17 +142,17 @@ impl<'a> RobotView<'a> {
 
     /// The links that it sends over, T_ij > 0.
     pub fn routes(self) -> impl Iterator<Item = &'a RouteLink> {
-        self.0.routes()
+        self.0.routing.routes()
     }
 
     /// λ_i.
     pub fn multiplier(self) -> f64 {
-        self.0.multiplier()
+        self.0.routing.multiplier()
     }
 
     /// c_i at the last sample.
     pub const fn residual(self) -> f64 {
-        self.0.residual
+        self.0.routing.residual()
     }
 
     /// Where it goes, if it goes anywhere.

@@ -3,11 +3,11 @@
 
 use std::collections::BTreeSet;
 
+use super::tests::{Alone, NEXT, RATE, grants, requests};
 use super::*;
-use crate::network::robot::tests::flows::{grants, requests, router};
 
 /// The receiver is robot 5 for the sender, and the sender robot 5 for the receiver.
-const OTHER: NodeId = 5;
+const OTHER: NodeId = NEXT;
 /// The flow that the receiver sends back.
 const BACK: f64 = 0.05;
 /// How many steps are taken; one less from the link that is in use.
@@ -18,8 +18,8 @@ const LITTLE: f64 = 1e-9;
 /// Both ends of a link, and every request and grant that was ever sent.
 #[derive(Clone)]
 struct Link {
-    sender: Robot,
-    receiver: Robot,
+    sender: Alone,
+    receiver: Alone,
     asks: Vec<FlowRequest>,
     grants: Vec<FlowGrant>,
 }
@@ -58,7 +58,7 @@ enum Step {
 impl Link {
     fn new() -> Self {
         let (asks, grants) = (Vec::new(), Vec::new());
-        Link { sender: router(), receiver: router(), asks, grants }
+        Link { sender: Alone::new(), receiver: Alone::new(), asks, grants }
     }
 
     /// The receiver has granted what it sends on, now sends something back, and hears what is asked next.
@@ -81,21 +81,14 @@ impl Link {
     }
 
     fn view(&self) -> View {
-        let held = self.sender.flow_to(OTHER).copied().unwrap_or_default();
-        let kept = self.receiver.reservations.iter().find(|kept| kept.from == OTHER);
-        let robot = &self.receiver;
-        let needs = robot.needs().into_iter();
-        View {
-            period: self.sender.period,
-            held: held.flow,
-            granted: held.lease,
-            asked: held.asked,
-            kept: kept.map_or(Lease::default(), |kept| kept.lease),
-            known: kept.map_or(RequestNumber::default(), |kept| kept.asked),
-            spare: needs
-                .map(|(period, needed)| robot.lasting_outflow(period) - needed)
-                .fold(f64::INFINITY, f64::min),
-        }
+        let (sender, receiver) = (&self.sender.reservation, &self.receiver.reservation);
+        let (held, granted, asked) =
+            sender.held.to(OTHER).map(|held| held.parts()).unwrap_or_default();
+        let (kept, known) = receiver.kept.of(OTHER).unwrap_or_default();
+        let promises = receiver.kept.promises(self.receiver.period);
+        let spare = promises.map(|(end, promised)| receiver.held.lasting(end) - promised - RATE);
+        let spare = spare.fold(f64::INFINITY, f64::min);
+        View { period: self.sender.period, held, granted, asked, kept, known, spare }
     }
 
     fn steps(&self) -> Vec<Step> {
@@ -109,7 +102,7 @@ impl Link {
             Step::SenderSettles,
             Step::ReceiverSettles,
         ];
-        let times = [Step::Pass(1), Step::Pass(self.sender.lease() + 1)];
+        let times = [Step::Pass(1), Step::Pass(LEASE + 1)];
         let asks = (0..self.asks.len()).map(Step::HearAsk);
         let grants = (0..self.grants.len()).map(Step::HearGrant);
         plans.into_iter().chain(rest).chain(times).chain(asks).chain(grants).collect()
@@ -117,44 +110,39 @@ impl Link {
 
     /// Takes a step, by the functions of the robots; returns how many requests and grants are sent.
     fn take(&mut self, step: Step) -> [usize; 2] {
-        let (mut asked, mut granted) = (NodeOutputs::of(0), NodeOutputs::of(0));
+        let (mut asked, mut granted) = (Vec::new(), Vec::new());
         let Link { sender, receiver, asks, grants: given } = self;
         match step {
             Step::Plan(flow) => {
-                sender.links[0].share = flow / sender.links[0].reliability;
-                sender.ask_for_flows(&mut asked);
+                sender.plans[0].flow = flow;
+                asked = sender.asks();
             }
             Step::SendOn(flow) => {
-                receiver.links[1].share = flow / receiver.links[1].reliability;
-                receiver.ask_for_flows(&mut granted);
+                receiver.plans[1].flow = flow;
+                granted = receiver.asks();
             }
             Step::SendBack(periods) => {
-                let RouteLink { share, reliability, .. } = &mut receiver.links[0];
-                *share = BACK / *reliability;
+                receiver.plans[0].flow = BACK;
                 let lease = Lease::of(BACK, receiver.period + periods);
-                let held = receiver.held_flow(OTHER);
-                (held.flow, held.lease) = (BACK, lease);
+                receiver.reservation.held.set(OTHER, BACK, lease);
             }
             Step::FindCircle(flow) => {
-                receiver.circles.add(OTHER, OTHER, flow);
-                receiver.leases_wait = true;
-                receiver.has_flow_news = true;
+                receiver.reservation.circles.add(OTHER, OTHER, flow);
+                receiver.reservation.has_news = true;
             }
-            Step::SenderSettles => sender.take_in_requests(&mut asked),
-            Step::ReceiverSettles => receiver.take_in_requests(&mut granted),
-            Step::HearAsk(at) => receiver.hear_request(OTHER, asks[at]),
-            Step::HearGrant(at) => sender.hear_grant(OTHER, given[at]),
+            Step::SenderSettles => asked = sender.settles(),
+            Step::ReceiverSettles => granted = receiver.settles(),
+            Step::HearAsk(at) => receiver.receives_request(OTHER, asks[at]),
+            Step::HearGrant(at) => sender.receives_grant(OTHER, given[at]),
             Step::Pass(periods) => {
-                for (robot, outputs) in [(sender, &mut asked), (receiver, &mut granted)] {
-                    robot.period += periods;
-                    // Access points are heard all the time.
-                    robot.flows.iter_mut().for_each(|held| held.is_due = false);
-                    robot.neighbours.iter_mut().for_each(|it| it.heard_in = robot.period);
-                    robot.ask_for_flows(outputs);
+                for (alone, sent) in [(sender, &mut asked), (receiver, &mut granted)] {
+                    alone.period += periods;
+                    alone.receives_all();
+                    *sent = alone.asks();
                 }
             }
         }
-        let (asked, granted) = (requests(&mut asked), self::grants(&mut granted));
+        let (asked, granted) = (requests(asked), self::grants(granted));
         let counts = [asked.len(), granted.len()];
         self.asks.extend(asked.into_iter().map(|(_, request)| request));
         self.grants.extend(granted.into_iter().map(|(_, grant)| grant));
@@ -163,15 +151,12 @@ impl Link {
 
     /// What tells it from others.
     fn key(&self) -> String {
-        let flows = |robot: &Robot| {
-            let shares = robot.links.iter().map(|link| link.share);
-            format!("{:?} {:?}", robot.flows, shares.collect::<Vec<_>>())
+        let state = |alone: &Alone| {
+            let flows: Vec<f64> = alone.plans.iter().map(|plan| plan.flow).collect();
+            format!("{:?} {flows:?} {}", alone.reservation, alone.period)
         };
-        let (sender, receiver) = (&self.sender, &self.receiver);
-        let state = (sender.period, sender.last_request, sender.has_flow_news);
-        let other = (&receiver.reservations, &receiver.circles, &self.asks, &self.grants);
-        let has_news = receiver.has_flow_news;
-        format!("{state:?} {has_news} {other:?} {} {}", flows(sender), flows(receiver))
+        let (sender, receiver) = (state(&self.sender), state(&self.receiver));
+        format!("{sender} {receiver} {:?} {:?}", self.asks, self.grants)
     }
 }
 
@@ -261,7 +246,7 @@ fn is_step(link: &Link, step: Step, next: &Link) -> bool {
         Step::SendBack(_) | Step::FindCircle(_) => rests == (true, true),
         Step::HearAsk(at) => {
             let ask = link.asks[at];
-            let is_known = link.receiver.reservations.iter().any(|kept| kept.from == OTHER);
+            let is_known = link.receiver.reservation.kept.of(OTHER).is_some();
             let is_new = !is_known || ask.number > before.known;
             let limit = if is_new { ask.held } else { f64::INFINITY };
             let left = |period| before.kept.lasting(period).min(limit);

@@ -188,7 +188,7 @@ fn recruit_bid(robot: &mut Robot) -> Option<Option<Bid>> {
 fn a_redundant_robot_bids_its_residual_and_then_the_shorter_path() {
     let bid = |residual: f64| {
         let mut robot = called(redundant(0, 11), false);
-        robot.residual = residual;
+        robot.routing.leaves(residual);
         robot.hears(knows_way(&robot, 1, east(0.5), fixed(11, 13)));
         let bid = recruit_bid(&mut robot).expect("it answers").expect("it competes");
         let route = &robot.route.as_ref().expect("it knows its way").1;

@@ -45,11 +45,11 @@ fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
 #[test]
 fn a_position_that_is_measured_again_is_no_news() {
     let mut robot = robot();
-    (robot.has_news, robot.is_unmeasured) = (false, false);
+    robot.processed_at.renew(robot.revision);
     robot.correct_position(HERE);
-    assert!(!robot.has_news && !robot.is_unmeasured);
+    assert!(!robot.has_news());
     robot.correct_position(east(LITTLE));
-    assert!(robot.has_news && robot.is_unmeasured);
+    assert!(robot.has_news());
 }
 
 #[test]
@@ -407,8 +407,8 @@ fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
         robot.holds(fixed(20, 99));
         robot.hears(Beacon { parked, ..beacon(5, west(1.2), fixed(13, 14), &[13, 14]) });
         robot.survey_links();
-        robot.links[0].share = share;
-        robot.held_flow(5).flow = share * robot.links[0].reliability;
+        robot.routing.plans(&[share]);
+        robot.sends(5, share * robot.routing.links()[0].reliability);
         robot.begin_negotiation();
         robot.hear_proposal(5, Segment { from: west(1.2), to: west(move_to) }, None);
         let mut outputs = crate::node::Outputs::of(0);
@@ -435,7 +435,7 @@ fn links_are_as_reliable_as_errors_leave_them() {
         let mut robot = unsure();
         robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
         robot.survey_links();
-        !robot.links.is_empty()
+        !robot.routing.links().is_empty()
     };
     let site = Arc::clone(&unsure().site);
     let limit = site.link.distance_at(0.3) - 2.0 * (2.0 * POSITION_ERROR + MOTION_ERROR);

@@ -34,10 +34,10 @@ fn a_robot_far_away_that_falls_silent_is_out_of_range_after_three_rounds() {
     silent_rounds(&mut robot, 1); // the round in which it was heard
     silent_rounds(&mut robot, ROUNDS_TO_BE_HEARD - 1);
     assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, ROUNDS_TO_BE_HEARD as u8 - 1)]);
-    robot.has_news = false;
+    robot.processed_at.renew(robot.revision);
     silent_rounds(&mut robot, 1);
     assert!(hears(&robot).is_empty());
-    assert!(robot.has_news, "it is news that a robot is out of range");
+    assert!(robot.has_news(), "it is news that a robot is out of range");
     assert_eq!(robot.out_of_sight.iter().map(|seen| seen.robot).collect::<Vec<_>>(), [1]);
 }
 
@@ -56,12 +56,12 @@ fn a_robot_nearby_that_falls_silent_is_taken_to_stay() {
 fn a_robot_that_is_called_gone_stays_in_sight_as_long_as_packets_flow_to_it() {
     let mut robot = robot();
     robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
-    robot.held_flow(1).flow = 0.1;
+    robot.sends(1, 0.1);
     let gone = [1].into_iter().collect();
     robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
     silent_rounds(&mut robot, 10);
     assert_eq!(hears(&robot), [1]);
-    robot.held_flow(1).flow = 0.0;
+    robot.sends(1, 0.0);
     silent_rounds(&mut robot, 1);
     assert!(hears(&robot).is_empty(), "nothing is left of the lease");
 }
@@ -107,9 +107,9 @@ fn silence_is_news_where_it_changes_what_the_robot_knows() {
     robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
     silent_rounds(&mut robot, 1);
     let is_news = |robot: &mut Robot| {
-        robot.has_news = false;
+        robot.processed_at.renew(robot.revision);
         silent_rounds(robot, 1);
-        robot.has_news
+        robot.has_news()
     };
     assert!(is_news(&mut robot), "it was heard a round ago");
     robot.position = west(0.1);
@@ -196,9 +196,10 @@ fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_con
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     let is_news = |robot: &mut Robot, period: u32, confirmed: Option<u32>, hint: u32| {
         robot.period = period;
-        (robot.has_news, robot.heard_up_to) = (false, hint);
+        robot.processed_at.renew(robot.revision);
+        robot.heard_up_to = hint;
         robot.hear_beacon(period, confirmed, &heard);
-        robot.has_news
+        robot.has_news()
     };
     assert!(is_news(&mut robot, NOW, None, 0), "the first one");
     for hint in [0, 1] {
@@ -351,14 +352,14 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
         robot.parent = robot.tree_parent();
         robot.process_messages().expect("guards have values");
         robot.measures();
-        robot.has_news = false;
+        robot.processed_at.renew(robot.revision);
         robot
     };
     let deliberates = |mut robot: Robot| {
         robot.restart_clock();
         robot.round_count.restart();
         robot.begin_period().expect("guards have values");
-        robot.has_news
+        robot.has_news()
     };
     assert!(!deliberates(standing()));
     let changes: [fn(&mut Robot); 3] = [
@@ -373,7 +374,7 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
     for (number, change) in changes.into_iter().enumerate() {
         let mut robot = standing();
         change(&mut robot);
-        robot.has_news = false;
+        robot.processed_at.renew(robot.revision);
         assert!(deliberates(robot), "{number}");
     }
 }

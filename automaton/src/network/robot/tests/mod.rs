@@ -2,13 +2,12 @@
 
 mod attachment;
 mod bodies;
-mod circles;
 mod eager;
 mod elections;
 mod errands;
 mod errors;
 mod exchanges;
-pub(super) mod flows;
+mod flows;
 mod hearing;
 mod lemmas;
 mod moves;
@@ -33,11 +32,14 @@ use crate::network::beacon::{Announcement, Beacon, Notice};
 use crate::network::duty::{
     Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station,
 };
+use crate::network::member::NodeOutputs;
+use crate::network::message::Message;
 use crate::network::mission::{Advance, Ended, Mission, RecruitElection, Shift};
 use crate::network::roll::Roll;
 use crate::network::scenario::{AccessPoint, Scenario};
 use crate::network::shared::Shared;
 use crate::network::site::Site;
+use crate::node::Destination;
 
 /// ρ.
 const CLEARANCE: f64 = 0.04;
@@ -46,16 +48,16 @@ const SERVICE_RADIUS: f64 = 0.2;
 /// σ.
 const STEP: f64 = 0.1;
 /// The robots of the hall; the only access point is node `ROBOTS`.
-const ROBOTS: usize = 6;
+pub(super) const ROBOTS: usize = 6;
 /// Where robot 0 stands.
-const HERE: Point = Point::new(5.0, 5.0);
+pub(super) const HERE: Point = Point::new(5.0, 5.0);
 /// The control period.
-const NOW: u32 = 50;
+pub(super) const NOW: u32 = 50;
 /// Anything that is surely on one side of a bound.
 const LITTLE: f64 = 1e-6;
 
 /// A hall of 10 × 10 with a pillar in the north-east, far from robot 0.
-fn hall() -> Scenario {
+pub(super) fn hall() -> Scenario {
     let robots: Vec<_> =
         (0..ROBOTS).map(|at| json!({"position": [1.0 + at as f64, 1.0], "rate": 0.1})).collect();
     serde_json::from_value(json!({
@@ -106,7 +108,7 @@ fn redundant(id: u32, parent: u32) -> Post {
 }
 
 /// A fixed post, attached to post `parent`.
-fn fixed(id: u32, parent: u32) -> Post {
+pub(super) fn fixed(id: u32, parent: u32) -> Post {
     post(id, PostKind::Fixed, Some(parent))
 }
 
@@ -133,11 +135,11 @@ fn way(posts: &[u32]) -> Option<Arc<Lineage>> {
     Some(Arc::new(posts.iter().rev().fold(root, extended)))
 }
 
-fn east(distance: f64) -> Point {
+pub(super) fn east(distance: f64) -> Point {
     HERE + Vector::new(distance, 0.0)
 }
 
-fn west(distance: f64) -> Point {
+pub(super) fn west(distance: f64) -> Point {
     east(-distance)
 }
 
@@ -150,7 +152,7 @@ fn south(distance: f64) -> Point {
 }
 
 /// The beacon of a robot that holds a post where it stands; its way leads over these posts.
-fn beacon(id: NodeId, position: Point, post: Post, posts: &[u32]) -> Beacon {
+pub(super) fn beacon(id: NodeId, position: Point, post: Post, posts: &[u32]) -> Beacon {
     Beacon {
         duty: Some(holding(post, position)),
         parked: !post.is_primary(),
@@ -160,14 +162,24 @@ fn beacon(id: NodeId, position: Point, post: Post, posts: &[u32]) -> Beacon {
 }
 
 /// The beacon of the access point, if that stood here.
-fn access_point(position: Point) -> Beacon {
+pub(super) fn access_point(position: Point) -> Beacon {
     Beacon { lineage: way(&[]), ..Beacon::silent(ROBOTS, position) }
+}
+
+/// What has been sent since the outputs were read last.
+pub(super) fn sent(outputs: &mut NodeOutputs) -> Vec<(Destination, Message)> {
+    outputs.drain_sent().map(|envelope| (envelope.to, envelope.message)).collect()
 }
 
 impl Robot {
     /// It hears a beacon in this control period.
     fn hears(&mut self, beacon: Beacon) {
         self.hear_beacon(self.period, None, &Arc::new(beacon));
+    }
+
+    /// So much flows to this node, over a lease that lasts.
+    fn sends(&mut self, to: NodeId, flow: f64) {
+        self.reservation.sends(to, flow);
     }
 
     /// It holds this post where it stands.

@@ -5,7 +5,6 @@ use pleach_continuous::network::acceptance::Segment;
 
 use super::*;
 use crate::network::message::Message;
-use crate::network::robot::reservation::{FlowGrant, RequestNumber};
 use crate::network::roll::{Absent, Roll, Wreck};
 use crate::node::{Destination, Outputs};
 
@@ -108,10 +107,9 @@ fn a_move_keeps_the_load_below_all_its_time_to_first_order() {
     let away = 1.5;
     robot.hears(access_point(west(away)));
     robot.survey_links();
-    let link = &mut robot.links[0];
+    robot.routing.plans(&[0.99]);
     let reliability = robot.site.link.reliability(away);
-    assert!((link.reliability - reliability).abs() < 1e-12);
-    link.share = 0.99;
+    assert!((robot.routing.links()[0].reliability - reliability).abs() < 1e-12);
     let segment = proposed(&mut robot).expect("there is a little room");
     // h = F/R(d), h' = −h R'/R: room is (1 − h)/h'.
     let steepness = 0.99 * -robot.site.link.slope(away) / reliability;
@@ -125,7 +123,7 @@ fn a_move_is_free_where_its_load_does_not_change() {
     let mut robot = mover();
     robot.hears(access_point(HERE));
     robot.survey_links();
-    robot.links[0].share = 0.99;
+    robot.routing.plans(&[0.99]);
     let segment = proposed(&mut robot).expect("nothing is in its way");
     assert!((segment.to - east(STEP)).norm() < 1e-6, "{segment:?}");
 }
@@ -137,7 +135,7 @@ fn a_robot_relies_on_robots_that_it_has_heard_in_this_period() {
         let mut robot = attached_mover();
         robot.hears(heard);
         robot.survey_links();
-        robot.links[0].share = 0.1;
+        robot.routing.plans(&[0.1]);
         robot.period += 1;
         robot.is_unsure()
     };
@@ -400,8 +398,8 @@ fn a_sender_objects_to_a_move_of_its_receiver_that_overloads_it() {
         robot.holds(fixed(20, 99));
         robot.hears(beacon(5, west(1.2), fixed(13, 14), &[13, 14]));
         robot.survey_links();
-        robot.links[0].share = share;
-        robot.held_flow(5).flow = share * robot.links[0].reliability;
+        robot.routing.plans(&[share]);
+        robot.sends(5, share * robot.routing.links()[0].reliability);
         robot.begin_negotiation();
         robot.hear_proposal(5, Segment { from: west(1.2), to: west(1.2 + ahead) }, None);
         let mut outputs = Outputs::of(0);
@@ -434,9 +432,9 @@ fn a_sender_objects_to_no_more_moves_than_it_has_to() {
             robot.hears(beacon(node, west(1.2), fixed(node as u32, 14), &[14]));
         }
         robot.survey_links();
-        for (at, node) in [(0, 5), (1, 6)] {
-            robot.links[at].share = 0.45;
-            robot.held_flow(node).flow = 0.45 * robot.links[at].reliability;
+        robot.routing.plans(&[0.45; 2]);
+        for node in [5, 6] {
+            robot.sends(node, 0.45 * robot.routing.links()[0].reliability);
         }
         robot.begin_negotiation();
         for (node, away) in [(5, first), (6, second)] {
@@ -479,19 +477,11 @@ fn a_sender_relies_on_its_receiver_and_answers_it() {
     robot.holds(fixed(20, 99));
     robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
     robot.survey_links();
-    robot.links[0].share = 0.2;
+    robot.routing.plans(&[0.2]);
     let mut outputs = Outputs::of(0);
     robot.ask_for_flows(&mut outputs);
     let asked = sent(&mut outputs);
-    let [Message::AskFlow(request)] = asked[..] else { panic!("it asks: {asked:?}") };
-    assert!((request.wanted - 0.2 * robot.links[0].reliability).abs() < 1e-12);
-    assert_eq!((request.held, request.number), (0.0, RequestNumber { period: NOW, number: 1 }));
-    robot.hear_grant(
-        5,
-        FlowGrant { number: request.number, flow: 0.15, until: NOW + 8, part: None },
-    );
-    robot.take_in_requests(&mut outputs);
-    assert!((robot.held_flow(5).flow - 0.15).abs() < 1e-12, "no more than is granted");
+    assert!(matches!(asked[..], [Message::AskFlow(_)]), "it asks: {asked:?}");
     robot.begin_negotiation();
     robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) }, None);
     let mut outputs = Outputs::of(0);

@@ -36,7 +36,8 @@ fn observers_see_a_robot_as_it_is() {
     robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
     robot.holds(primary(30, None, 13));
     robot.advances_to(east(3.0));
-    (robot.epoch, robot.residual) = (2, 0.5);
+    robot.epoch = 2;
+    robot.routing.leaves(0.5);
     robot.measures();
     let view = robot.view();
     assert_eq!((view.epoch(), view.current_task()), (2, Some(0)));

@@ -230,8 +230,8 @@ fn links_carry_no_more_where_a_robot_sends_nearly_all_the_time_whatever_is_left_
         let mut robot = leader();
         robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
         robot.survey_links();
-        robot.links[0].share = load;
-        robot.residual = 0.0;
+        robot.routing.plans(&[load]);
+        robot.routing.leaves(0.0);
         robot.review_team();
         let team = robot.team.expect("it leads");
         (team.slack, team.saturated)

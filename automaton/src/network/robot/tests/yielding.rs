@@ -206,7 +206,7 @@ fn who_gives_up_stepping_aside_asks_for_no_way() {
     robot.neighbours.iter_mut().for_each(|known| known.heard_in = NOW);
     robot.heard_all_in = Some(NOW);
     assert!(robot.next_beacon().way.is_some());
-    robot.has_news = false;
+    robot.processed_at.renew(robot.revision);
     robot.propose().expect("guards have values");
     robot.set_off();
     robot.restart_clock();

@@ -1,0 +1,57 @@
+//! Which nodes are where the robot has received them last.
+
+use pleach_discrete::network::NodeId;
+
+use super::context::Context;
+use super::neighbours::Neighbours;
+
+/// What a robot knows of the places of others in one step.
+#[derive(Clone, Copy)]
+pub(super) struct Places<'a> {
+    pub context: Context<'a>,
+    pub neighbours: &'a Neighbours,
+    /// The robots to whose moves it has consented, each with the control period in which it did last.
+    pub consented: &'a [(NodeId, u32)],
+    /// Whether all neighbours have been received in this control period, and no node has begun the next one.
+    pub has_heard_all: bool,
+}
+
+impl Places<'_> {
+    /// Whether a node on which the robot relies is where it was received last: it is an access point, it has been
+    /// received in this control period, or it could not move since, because the robot sends to it and has not
+    /// consented.
+    pub fn are_known_of(&self, node: NodeId, sends_to: bool) -> bool {
+        let Context { id, period, .. } = self.context;
+        if !self.context.is_robot(node) {
+            return true;
+        }
+        let Ok(at) = self.neighbours.place_of(node) else { return false };
+        let heard_in = self.neighbours[at].heard_in;
+        if self.has_heard_all {
+            debug_assert_eq!(heard_in, period, "robot {id} has not received all");
+            return true;
+        }
+        let has_consented =
+            |&(mover, consented_in): &(NodeId, u32)| mover == node && consented_in >= heard_in;
+        heard_in == period || sends_to && !self.consented.iter().any(has_consented)
+    }
+
+    /// The last control period in which this node has been received; 0 if it has not.
+    pub fn last_heard(&self, node: NodeId) -> u32 {
+        self.neighbours.place_of(node).map_or(0, |at| self.neighbours[at].heard_in)
+    }
+}
+
+/// The [`Places`] of a robot, borrowed field by field.
+macro_rules! places {
+    ($robot:expr) => {
+        $crate::network::robot::places::Places {
+            context: $crate::network::robot::context!($robot),
+            neighbours: &$robot.neighbours,
+            consented: &$robot.consented,
+            has_heard_all: $robot.heard_all_in == Some($robot.period) && !$robot.is_behind,
+        }
+    };
+}
+
+pub(super) use places;
