@@ -1,16 +1,16 @@
 //! # The bouncing ball
 //!
-//! A ball falls from rest under gravity, ḧ = −g. Where it meets the floor it is thrown back with
-//! λ times the speed of the impact. The flights shorten by the factor λ each time, so that
-//! infinitely many impacts happen before an instant that can be told in advance: the run is *Zeno*.
+//! A ball falls from rest under gravity, ḧ = −g, and bounces off the floor with λ times the speed of
+//! the impact. Each flight is shorter than the one before by the factor λ, so infinitely many
+//! impacts accumulate before a finite instant: the run is *Zeno*.
 //!
 //! The model is the first example of Goebel, Sanfelice and Teel, *Hybrid dynamical systems* (2009),
-//! [doi:10.1109/MCS.2008.931718](https://doi.org/10.1109/MCS.2008.931718). The numbers, a drop of
-//! 1 m with g = 9.81 m/s² and λ = 0.8, are those of Example 1.2 of the Hybrid Equations Toolbox,
+//! [doi:10.1109/MCS.2008.931718](https://doi.org/10.1109/MCS.2008.931718). The numbers, a drop of 1
+//! m with g = 9.81 m/s² and λ = 0.8, are those of Example 1.2 of the Hybrid Equations Toolbox,
 //! [doi:10.1145/2461328.2461346](https://doi.org/10.1145/2461328.2461346).
 //!
-//! The answer is in closed form: the first fall takes τ = √(2h/g), the flight after impact k takes
-//! 2 λᵏ τ, and the sum of all of them is τ (1 + λ)/(1 − λ).
+//! In closed form, the first fall takes τ = √(2h/g), the flight after impact k takes 2 λᵏ τ, and all
+//! of them together take τ (1 + λ)/(1 − λ).
 
 mod exhibit;
 

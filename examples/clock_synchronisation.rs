@@ -1,29 +1,28 @@
 //! # A clock-synchronisation network of five nodes
 //!
 //! Every node has a clock that gains or loses up to ρ seconds a second. Whenever its own clock has
-//! advanced by another period R, a node ticks. A tick is a message to all nodes, the sender
-//! included, that takes between δ − ε and δ + ε; each node notes, by its own clock, when it hears
-//! one. A wait W after its own tick, a node sets its clock so that the *fault-tolerant midpoint* of
-//! the five readings, the middle between the second and the fourth, was δ after the end of the
-//! period. One clock may be far off and does not mislead the others. No node is in charge; each
-//! decides by what it hears.
+//! advanced by another period R, a node ticks: it sends a message to all nodes, itself included,
+//! that takes between δ − ε and δ + ε. Each node records, by its own clock, when each tick arrives.
+//! A wait W after its own tick, a node sets its clock so that the *fault-tolerant midpoint* of the
+//! five readings, the middle between the second and the fourth, was δ after the end of the period.
+//! So one clock may be far off without misleading the others, and no node is in charge.
 //!
-//! The algorithm is that of Lundelius Welch and Lynch, *A new fault-tolerant algorithm for clock
+//! The algorithm is from Lundelius Welch and Lynch, *A new fault-tolerant algorithm for clock
 //! synchronization* (1988),
 //! [doi:10.1016/0890-5401(88)90043-0](https://doi.org/10.1016/0890-5401%2888%2990043-0). The drift
-//! of 1e-4 is that of a plain quartz; R = 10 s, W = 0.2 s and δ = 0.02 s.
+//! of 1e-4 is typical of a plain quartz; R = 10 s, W = 0.2 s and δ = 0.02 s.
 //!
-//! With ε = 0 the answer is in closed form. Clocks are affine functions of time and midpoints
-//! commute with those, so that in each round all clocks agree on one instant, δ after the midpoint
+//! With ε = 0 the answer has a closed form. Midpoints commute with affine functions, and clocks are
+//! affine functions of time, so in each round all clocks agree on one instant, δ after the midpoint
 //! of the ticks. The next period ends R − δ later by each clock, and the instants of round k + 1
-//! are those of round k later by δ + (R − δ)(1/r₂ + 1/r₄)/2, where r₂ and r₄ are the rates of the
-//! second and the fourth fastest. Until the fastest clock is set, the fastest and the slowest move
+//! follow those of round k by δ + (R − δ)(1/r₂ + 1/r₄)/2, where r₂ and r₄ are the rates of the
+//! second and the fourth fastest. Until the fastest clock is set, the fastest and the slowest drift
 //! apart by 2 ρ (R + W)/(1 + ρ) in the first round and by 2 ρ (R − δ + W)/(1 + ρ) in the others.
 //!
-//! With ε > 0 each reading is off by at most (1 + ρ) ε. Midpoints do not enlarge errors, so that
-//! the instants on which two nodes agree are at most 2 ε apart. A node that has just set its clock
-//! may be another ε away from one that has not, so that clocks are at most 3 (1 + ρ) ε farther apart
-//! than with ε = 0.
+//! With ε > 0 each reading is off by at most (1 + ρ) ε. Midpoints do not enlarge errors, so the
+//! instants on which two nodes agree differ by at most 2 ε. A node that has just set its clock may
+//! be another ε away from one that has not, so clocks are at most 3 (1 + ρ) ε farther apart than
+//! with ε = 0.
 
 mod exhibit;
 

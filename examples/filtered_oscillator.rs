@@ -1,19 +1,19 @@
 //! # The filtered oscillator
 //!
-//! In the plane, the line y = −k x separates two affine flows: above it everything tends to
-//! (0.7, −0.7), which lies below it, and below it to (−0.7, 0.7), which lies above. So the state
-//! goes round and round. Its first coordinate passes through a chain of filters of first order,
-//! each of which follows the one before it by ż = 5 (u − z).
+//! In the plane, the line y = −k x separates two affine flows: above it the state tends to (0.7,
+//! −0.7), which lies below it, and below it to (−0.7, 0.7), which lies above. So the state
+//! oscillates. Its first coordinate passes through a chain of first-order filters, each of which
+//! follows the one before by ż = 5 (u − z).
 //!
-//! The benchmark is that of Frehse et al., *SpaceEx: scalable verification of hybrid systems*
-//! (2011), [doi:10.1007/978-3-642-22110-1_30](https://doi.org/10.1007/978-3-642-22110-1_30), with
-//! the four locations, the numbers (k = 0.714286) and the initial set of the published model file,
-//! in whose middle, at (0.25, 0), the run begins. The property asked for is y < 0.5 up to 4 s.
+//! The benchmark is from Frehse et al., *SpaceEx: scalable verification of hybrid systems* (2011),
+//! [doi:10.1007/978-3-642-22110-1_30](https://doi.org/10.1007/978-3-642-22110-1_30), with the four
+//! locations, the numbers (k = 0.714286) and the initial set of the published model file. The run
+//! begins in the middle of this set, at (0.25, 0). The property to check is y < 0.5 up to 4 s.
 //!
-//! The switching instants have a closed form: with s = e⁻ᵗ the coordinates are polynomials,
-//! x = 0.7 + (x₀ − 0.7) s² and y = −0.7 + (y₀ + 0.7) s, so that the line is met where a square
+//! The switching instants have a closed form: with s = e⁻ᵗ the coordinates are polynomials, x = 0.7
+//! + (x₀ − 0.7) s² and y = −0.7 + (y₀ + 0.7) s, so the state meets the line where a quadratic
 //! polynomial of s is 0. All runs tend to a cycle through ±(a, −k a) with a = 0.7 √(2k − 1)/k, half
-//! of which takes ln (0.7 + k a)/(0.7 − k a). What the filters give is compared with matrix
+//! of which takes ln (0.7 + k a)/(0.7 − k a). The outputs of the filters are compared with matrix
 //! exponentials.
 
 mod exhibit;

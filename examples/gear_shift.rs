@@ -1,24 +1,22 @@
 //! # The gear shift
 //!
-//! A car accelerates at full throttle. In gear n the engine turns at ω = αₙ v, gives the torque
-//! T(ω) = T_m (1 − β (ω/ω_m − 1)²), and pushes the car with αₙ T(αₙ v) against rolling resistance
-//! and drag. Where the engine reaches its limit of 600 rad/s, the gear box *selects*: it takes the
-//! lowest gear in which the engine stays below the limit.
+//! A car accelerates at full throttle. In gear n the engine turns at ω = αₙ v, gives the torque T(ω)
+//! = T_m (1 − β (ω/ω_m − 1)²), and pushes the car with αₙ T(αₙ v) against rolling resistance and
+//! drag. When the engine reaches its limit of 600 rad/s, the gear box *selects* the lowest gear in
+//! which the engine stays below the limit.
 //!
-//! Selecting is a location in which no time passes: all its transitions are *at once*, and their
-//! priorities say which of them goes first. So the car can also be put on the road at any speed,
-//! and is in the right gear at (0, 1).
+//! Selecting is a location in which no time passes: all its transitions are *at once*, and
+//! priorities order them. So the car can start at any speed, and is in the right gear at (0, 1).
 //!
 //! The car and its numbers are those of the cruise-control example in Åström and Murray, *Feedback
 //! Systems* ([2nd edition, 2021](https://fbswiki.org), section 4.1), for a mass of 1600 kg. The
 //! limit of 600 rad/s is our choice; in the fifth gear the drag keeps the engine below it. Gear
-//! boxes with urgent locations are as old as Lindahl, Pettersson and Yi, *Formal design and
-//! analysis of a gear controller* (1998),
-//! [doi:10.1007/BFb0054178](https://doi.org/10.1007/BFb0054178).
+//! boxes with urgent locations go back to Lindahl, Pettersson and Yi, *Formal design and analysis of
+//! a gear controller* (1998), [doi:10.1007/BFb0054178](https://doi.org/10.1007/BFb0054178).
 //!
-//! The answer is in closed form: in every gear v̇ = a + bv + cv² with c < 0 < a, a Riccati equation
-//! with two real roots. From u to v it takes (F(v) − F(u))/(c (r − s)) seconds, where r > s are the
-//! roots and F(v) = ln((r − v)/(v − s)).
+//! In every gear v̇ = a + bv + cv² with c < 0 < a, a Riccati equation with two real roots r > s. In
+//! closed form, from u to v it takes (F(v) − F(u))/(c (r − s)) seconds, where F(v) = ln((r − v)/(v −
+//! s)).
 
 mod exhibit;
 

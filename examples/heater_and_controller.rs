@@ -1,19 +1,18 @@
 //! # The heater and its controller
 //!
-//! The thermostat again, as the two things that it is made of. A heater warms a room and can be
-//! turned on and off; when, it does not know. A controller sees the temperature and decides; how
-//! rooms warm, it does not know. They share two *labels*, `turn on` and `turn off`, which both take
-//! in one jump, and the controller reads the heater's temperature through a *connection*.
+//! The thermostat, split into two components. The heater warms the room and can be switched at any
+//! time; the controller reads the temperature through a *connection* and decides when to switch.
+//! Both share two *labels*, `turn on` and `turn off`, and take each in one jump.
 //!
-//! Composition by shared labels is that of Alur et al., *The algorithmic analysis of hybrid
-//! systems* (1995), [doi:10.1016/0304-3975(94)00202-T](https://doi.org/10.1016/0304-3975(94)00202-T);
-//! reading what another component owns is the shared variable of Lynch, Segala and Vaandrager,
-//! *Hybrid I/O automata* (2003),
-//! [doi:10.1016/S0890-5401(03)00067-1](https://doi.org/10.1016/S0890-5401(03)00067-1). The rates
-//! are those of the [thermostat](thermostat.md), and the thresholds its guards, 19 and 21 °C.
+//! Composition by shared labels follows Alur et al., *The algorithmic analysis of hybrid systems*
+//! (1995), [doi:10.1016/0304-3975(94)00202-T](https://doi.org/10.1016/0304-3975(94)00202-T); a
+//! connection is a shared variable in the sense of Lynch, Segala and Vaandrager, *Hybrid I/O
+//! automata* (2003),
+//! [doi:10.1016/S0890-5401(03)00067-1](https://doi.org/10.1016/S0890-5401(03)00067-1). The rates are
+//! those of the [thermostat](thermostat.md), and the thresholds its guards, 19 and 21 °C.
 //!
-//! There are two answers to compare with: the same system written as one automaton, which must do
-//! the same at every instant, and the closed form of its switching.
+//! The run is compared with the same system written as one automaton, at every instant, and with the
+//! closed form of its switching.
 
 mod exhibit;
 

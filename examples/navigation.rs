@@ -1,17 +1,16 @@
 //! # The navigation benchmark
 //!
-//! A body moves over a grid of unit cells. Each cell is marked with the direction in which the
-//! body ought to move there, i for an angle of i π/4 clockwise from north, and its velocity v
-//! tends towards that v_d = (sin i π/4, cos i π/4) by v̇ = A (v − v_d). It is to reach the cell
-//! marked A and to keep out of the cell marked B; in both of them it comes to rest. Outside the
-//! grid the closest cell says the direction.
+//! A body moves over a grid of unit cells. The map gives each cell a desired direction, i for an
+//! angle of i π/4 clockwise from north, and the velocity v tends towards v_d = (sin i π/4, cos i
+//! π/4) by v̇ = A (v − v_d). The body should reach the cell marked A and avoid the cell marked B; in
+//! both it comes to rest. Outside the grid the closest cell gives the direction.
 //!
-//! The benchmark is that of Fehnker and Ivančić, *Benchmarks for hybrid systems verification*
-//! (2004), [doi:10.1007/978-3-540-24743-2_22](https://doi.org/10.1007/978-3-540-24743-2_22): its
-//! matrix A and the map of its Figure 1.
+//! The benchmark, with the matrix A and the map of its Figure 1, is from Fehnker and Ivančić,
+//! *Benchmarks for hybrid systems verification* (2004),
+//! [doi:10.1007/978-3-540-24743-2_22](https://doi.org/10.1007/978-3-540-24743-2_22).
 //!
-//! Within a cell the flow is linear, so that the answer is a matrix exponential, with the instants
-//! of the crossings by bisection.
+//! Within a cell the flow is linear, so the answer is a matrix exponential, with the instants of the
+//! crossings by bisection.
 
 mod exhibit;
 mod oracle;

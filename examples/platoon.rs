@@ -1,20 +1,19 @@
 //! # The vehicle platoon with lost communication
 //!
-//! Three vehicles follow a leader. For each, the state has by how much its gap to the vehicle ahead
-//! exceeds the one asked for, in metres (x₁, x₄, x₇), how fast that changes (x₂, x₅, x₈) and the
-//! vehicle's own acceleration (x₃, x₆, x₉). While the vehicles communicate, each drives by what all
-//! know; without communication, the first two only by what they see of the vehicle ahead. A radio
-//! that works for 5 s and fails for 5 s says which.
+//! Three vehicles follow a leader. The state of each is the excess of its gap to the vehicle ahead
+//! over the desired one, in metres (x₁, x₄, x₇), the rate of that excess (x₂, x₅, x₈), and the
+//! vehicle's acceleration (x₃, x₆, x₉). While the vehicles communicate, each controller uses the
+//! states of all; without communication, the first two use only what they measure of the vehicle
+//! ahead. The radio works for 5 s and fails for 5 s in turn.
 //!
-//! The benchmark is that of Ben Makhlouf and Kowalewski, *Networked cooperative platoon of vehicles
-//! for testing methods and verification tools* (ARCH 2014), with the gains of its two controllers
-//! as the ARCH competitions give them; the radio is that of their instance PLAD01. The leader may
-//! do anything between braking with 9 m/s² and accelerating with 1 m/s², and within 20 s no gap
-//! may fall by 30 m (PLAD01-BND30), which the tools of the competitions prove.
+//! The benchmark is from Ben Makhlouf and Kowalewski, *Networked cooperative platoon of vehicles for
+//! testing methods and verification tools* (ARCH 2014), with the gains of its two controllers as in
+//! the ARCH competitions and the radio of their instance PLAD01. The leader may do anything between
+//! braking with 9 m/s² and accelerating with 1 m/s², and within 20 s no gap may fall by 30 m
+//! (PLAD01-BND30), which the tools of the competitions prove.
 //!
 //! Here the leader brakes all the time. The answer is a matrix exponential for each of the four
-//! spans of 5 s; and from the impulse responses that it gives follows by how much gaps can fall at
-//! all, whatever the leader does.
+//! spans of 5 s; its impulse responses bound how far gaps can fall, whatever the leader does.
 
 mod exhibit;
 mod oracle;

@@ -1,17 +1,17 @@
 //! # The thermostat
 //!
-//! A room cools by ẋ = −0.1 x, and with the heater on it warms by ẋ = 5 − 0.1 x. Below 19 °C the
-//! heater may be turned on, and below 18 °C it cannot stay off; above 21 °C it may be turned off,
-//! and above 22 °C it cannot stay on.
+//! A room cools by ẋ = −0.1 x, and warms by ẋ = 5 − 0.1 x while the heater is on. Below 19 °C the
+//! heater may turn on, and below 18 °C it cannot stay off; above 21 °C it may turn off, and above 22
+//! °C it cannot stay on.
 //!
 //! This is the thermostat of Figure 1 in Henzinger, *The theory of hybrid automata* (1996),
-//! [doi:10.1109/LICS.1996.561342](https://doi.org/10.1109/LICS.1996.561342), with its numbers. It
-//! is nondeterministic: guards allow a transition, and only the end of an invariant forces it.
-//! So there is not one run but a set of them, and two runs are its extremes: the one that takes
-//! every transition as soon as it may, and the one that waits as long as it can.
+//! [doi:10.1109/LICS.1996.561342](https://doi.org/10.1109/LICS.1996.561342), with its numbers. It is
+//! nondeterministic: a guard allows a transition, and only the end of an invariant forces it. Two of
+//! its runs are shown, the extremes: one takes every transition as soon as it may, the other as late
+//! as it can.
 //!
-//! The answer is in closed form for both: cooling from a to b takes 10 ln(a/b) seconds, and warming
-//! takes 10 ln((50 − a)/(50 − b)) seconds.
+//! In closed form, cooling from a to b takes 10 ln(a/b) seconds, and warming takes 10 ln((50 −
+//! a)/(50 − b)) seconds.
 
 mod exhibit;
 

@@ -1,21 +1,20 @@
 //! # Two-phase commit
 //!
-//! Participants of a transaction prepare to commit it and say so, or give up. A coordinator
-//! commits once it has heard from all that they are prepared; until then it may abort at any time.
-//! What it decides, each participant learns some time. No one waits for another, and messages take
-//! as long as they like; so no clock is in the model, and everything that can ever happen is
-//! explored.
+//! The participants of a transaction prepare to commit and say so, or abort. The coordinator commits
+//! once all have reported that they are prepared; until then it may abort at any time. Each
+//! participant receives the decision at some later time. Nothing bounds how long messages take, so
+//! the model has no clock, and every reachable state is explored.
 //!
-//! The protocol is that of Gray and Lamport, *Consensus on transaction commit* (2006),
+//! The protocol is from Gray and Lamport, *Consensus on transaction commit* (2006),
 //! [doi:10.1145/1132863.1132867](https://doi.org/10.1145/1132863.1132867), in the form of Lamport's
 //! TLA⁺ specification `TwoPhase`: a message that has been sent stays and may arrive any number of
 //! times. Each message has a channel of that kind. A ballot for each participant is what the
-//! coordinator has heard from it; `commit` is an event that the coordinator and all ballots take
+//! coordinator has received from it; `commit` is an event that the coordinator and all ballots take
 //! together.
 //!
-//! The answer is the number of states that can be reached: 288 with three participants and 8,832
-//! with five, as the model checker stateright asserts for the same specification in its example
-//! `2pc`. In none of them has one participant committed and another aborted.
+//! The answer is the number of reachable states: 288 with three participants and 8,832 with five, as
+//! the model checker stateright asserts for the same specification in its example `2pc`. In none of
+//! them has one participant committed and another aborted.
 
 mod exhibit;
 

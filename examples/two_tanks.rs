@@ -1,19 +1,19 @@
 //! # Two tanks
 //!
-//! Two tanks leak, each by v litres a second, and one hose brings w litres a second to one of them
-//! at a time. A tank that runs empty calls for the hose. With v < w < 2v the hose brings more than
-//! one tank loses and less than both lose: it changes over ever faster, infinitely often before the
-//! instant at which all the water is gone. No reset is needed to be Zeno.
+//! Two tanks leak, each by v litres a second, and a hose fills one of them at a time by w litres a
+//! second. The hose changes over to a tank that runs empty. With v < w < 2v it brings more than one
+//! tank loses and less than both lose, so it changes over ever faster, infinitely often before the
+//! instant at which all the water is gone: the run is Zeno without any reset.
 //!
-//! The water tanks were put forward by Alur and Henzinger, *Modularity for timed and hybrid
-//! systems* (1997), [doi:10.1007/3-540-63141-0_6](https://doi.org/10.1007/3-540-63141-0_6), and
-//! their accumulation was studied by Zhang, Johansson, Lygeros and Sastry, *Zeno hybrid systems*
-//! (2001), [doi:10.1002/rnc.592](https://doi.org/10.1002/rnc.592). The numbers, v = 1/2, w = 3/4
-//! and 0 and 1 litres at the start, are those of the exercise on Figure 4.17 in Lee and Seshia,
-//! *Introduction to Embedded Systems* (2nd edition, 2017).
+//! The model is from Alur and Henzinger, *Modularity for timed and hybrid systems* (1997),
+//! [doi:10.1007/3-540-63141-0_6](https://doi.org/10.1007/3-540-63141-0_6); Zhang, Johansson, Lygeros
+//! and Sastry, *Zeno hybrid systems* (2001), [doi:10.1002/rnc.592](https://doi.org/10.1002/rnc.592),
+//! studied its accumulation. The numbers, v = 1/2, w = 3/4 and 0 and 1 litres at the start, are
+//! those of the exercise on Figure 4.17 in Lee and Seshia, *Introduction to Embedded Systems* (2nd
+//! edition, 2017).
 //!
-//! The answer is in closed form: all the water, 1 litre, is lost at rate 2v − w, after 4 s. Flow
-//! k + 1 takes (w − v)/v = 1/2 times as long as flow k, and the first takes 1/v = 2 s.
+//! In closed form, all the water, 1 litre, is lost at the rate 2v − w, after 4 s. Flow k + 1 takes
+//! (w − v)/v = 1/2 times as long as flow k, and the first takes 1/v = 2 s.
 
 mod exhibit;
 

@@ -9,12 +9,9 @@ use std::{fs, io};
 
 use crate::generated::{is_update, read, root};
 use pleach::automaton::network::Automata;
-use pleach::automaton::network::access_point::{ACCESS_POINT_GLOSSARY, ATTENDANCE_GLOSSARY};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
-use pleach::automaton::network::robot::GLOSSARY;
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::automaton::network::user::USER_GLOSSARY;
 use pleach::automaton::network::{Crash, NodeFaults};
 use pleach::automaton::node::MessageFaults;
 use pleach::automaton::{Automaton, diagram};
@@ -101,7 +98,7 @@ fn the_drawings_of_the_automata_are_up_to_date() {
 #[test]
 fn the_page_on_the_automata_is_up_to_date() {
     let chapters = for_each_automaton!(Automata::new().unwrap(), chapter).join("\n");
-    keep_up_to_date("docs/automata.md", &format!("{INTRODUCTION}\n{chapters}\n{}", glossaries()));
+    keep_up_to_date("docs/automata.md", &format!("{INTRODUCTION}\n{chapters}"));
 }
 
 const INTRODUCTION: &str = "\
@@ -117,6 +114,13 @@ them once for each robot), and the user the last. The pictures are drawn from th
 priority number is taken. A location shows its flow, its invariant after \"while\", and what is chosen there at each
 sample. `pleach diagram duty --format mermaid` prints an automaton as text, with every guard, reset and target;
 [coverage](coverage.md) counts the rows.
+
+A guard combines quantities and propositions that the node measures of its own state. The source defines each name
+beside its measurement: those of [robots](../automaton/src/network/robot/facts.rs), of [access
+points](../automaton/src/network/access_point/service.rs), of [their record of a
+robot](../automaton/src/network/access_point/attendance.rs), and of the [user](../automaton/src/network/user.rs). The
+guard of *trapped* in the mission, for example, begins with `first ∧ still ≥ window ∧ ¬slack`: the robot is p₁, the
+primary team has stood still for as many control periods as make a stationary point, and no member has room to move.
 ";
 
 const DUTY: &str = "\
@@ -171,19 +175,6 @@ until the next sample.
 const REQUEST: &str = "\
 The user sends its tasks to the first access point in every control period until an answer arrives.
 ";
-
-fn glossaries() -> String {
-    let glossary = |title: &str, names: &[(&str, &str)]| {
-        let row = |(name, text): &(&str, &str)| format!("| `{name}` | {} |\n", text.trim());
-        let rows: String = names.iter().map(row).collect();
-        format!("### {title}\n\n| name | meaning |\n| --- | --- |\n{rows}")
-    };
-    let robots = glossary("Robots", GLOSSARY);
-    let access_points = glossary("Access points", ACCESS_POINT_GLOSSARY);
-    let attendance = glossary("A robot as an access point knows it", ATTENDANCE_GLOSSARY);
-    let user = glossary("The user", USER_GLOSSARY);
-    format!("## Variables of the guards\n\n{robots}\n{access_points}\n{attendance}\n{user}")
-}
 
 fn chapter<L: Location, E: Event, S: Valuation>(
     title: &str,

@@ -19,10 +19,8 @@ use pleach::page::{self as pages, TrajectoryPage};
 
 pub use number::{number, numbers};
 
-/// What is folded up below the tables of an automaton.
-const DEFINITION: &str = "The formal definition";
-/// The longest formal definition that a page shows, in words, with tables: longer ones only repeat the drawing.
-const LONGEST_DEFINITION: usize = 140;
+/// The longest tables of an automaton that a page shows, in words: longer ones only repeat the drawing.
+const LONGEST_TABLES: usize = 110;
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
@@ -81,21 +79,15 @@ impl Exhibit {
         self.component(title, automaton).checked(&automaton.check())
     }
 
-    /// Shows an automaton that is a part of a composition: as a diagram and, where it is small, as tables and by its
-    /// formal definition.
+    /// Shows an automaton that is a part of a composition: as a diagram and, where it is small, as tables.
     pub fn component<L: Location, E: Event, S: Coordinates>(
         mut self,
         title: &'static str,
         automaton: &Automaton<L, E, S>,
     ) -> Self {
-        let definition = diagram::latex(automaton);
-        let mut legend = String::new();
-        if definition.split_whitespace().count() <= LONGEST_DEFINITION {
-            let (table, definition) = (diagram::table(automaton), definition.trim());
-            legend = format!(
-                "{table}\n<details><summary>{DEFINITION}</summary>\n\n```math\n{definition}\n```\n\n</details>\n"
-            );
-        }
+        let tables = diagram::table(automaton);
+        let is_short = tables.split_whitespace().count() <= LONGEST_TABLES;
+        let legend = if is_short { tables } else { String::new() };
         let diagram = diagram::svg(automaton);
         let automaton = Some(pages::Drawing::of(automaton));
         self.drawings.push(Drawing { title, diagram, automaton, legend });

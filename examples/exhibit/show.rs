@@ -10,8 +10,8 @@ use pleach::automaton::{Reason, Trajectory};
 
 use super::{Exhibit, number, numbers};
 
-/// The most jumps of a run that are told.
-const MOST_JUMPS: usize = 12;
+/// The most jumps of a run that are shown.
+const MOST_JUMPS: usize = 6;
 
 impl Exhibit {
     /// Prints the exhibit and writes its drawings, and a page for each run, to `figures/NAME/`.
