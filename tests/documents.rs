@@ -120,12 +120,13 @@ beside its measurement: those of [robots](../automaton/src/network/robot/facts.r
 points](../automaton/src/network/access_point/service.rs), of [their record of a
 robot](../automaton/src/network/access_point/attendance.rs), and of the [user](../automaton/src/network/user.rs). The
 guard of *trapped* in the mission, for example, begins with `first ∧ still ≥ window ∧ ¬slack`: the robot is p₁, the
-primary team has stood still for as many control periods as make a stationary point, and no member has room to move.
+primary team has stood still for as many control periods as make a stationary point, no member has room to move, and the
+leader is not near enough to its task.
 ";
 
 const DUTY: &str = "\
-The duty says what a robot does for the network. Each location owns its data, and a reset maps the data of one location
-to the data of the next. The role of the paper follows from the duty: a robot on standby is *redundant*; a relay, a
+The duty is what a robot does for the network. Each location owns its data, and a reset maps the data of one location to
+the data of the next. The role of the paper follows from the duty: a robot on standby is *redundant*; a relay, a
 follower and a robot that shifts along Σ are *nodes*, the first of Σ the *recruit*; junctions, leaves and leaders keep
 their names.
 ";
@@ -137,7 +138,7 @@ Where a transition takes a duty, the duty automaton jumps with it.
 ";
 
 const MISSION: &str = "\
-The phase is the state of the mission in the view of this robot. Transitions of priority 0 follow the newest notice
+The phase is the state of the mission as this robot has received it. Transitions of priority 0 follow the newest notice
 received. Those of priority 1 follow from the robot's own state, and their resets issue the next notice. While a notice
 spreads, robots are in different phases.
 ";

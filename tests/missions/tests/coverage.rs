@@ -27,48 +27,41 @@ const SEEDS: u64 = 2;
 const REASONS: &[([&str; 4], &str)] = &[
     (
         ["service of the tasks", "electing", "no bid", "over"],
-        "with unreachable = \"end\": a unit test takes it",
+        "with unreachable = \"end\"; in a unit test",
     ),
-    (
-        ["duty", "", "takes ", ""],
-        "every two duties that an exchange may join have a row, so that none can fail half way; \
-         robots with these two meet rarely",
-    ),
+    (["duty", "", "takes ", ""], "an exchange joins two duties whose robots rarely meet"),
     (["duty", "waiting on the path", "leaf kept", ""], "Σ is given up while a leaf waits on it"),
     (
         ["exchange", "refusing", "refusal in vain", ""],
-        "the mover stops before it receives the refusal: a unit test takes it",
+        "the mover stops before it receives the refusal; in a unit test",
     ),
-    (["exchange", "", "refus", ""], "follows a refusal; taken by `explore -- thorough`"),
+    (["exchange", "", "refus", ""], "after a refusal; in `explore -- thorough`"),
     (
         ["exchange", "offering and refusing", "", ""],
-        "a mover that is itself in the way of another has refused its offer",
+        "a mover in the way of another mover has refused its offer",
     ),
-    (["mission", "", "", ""], "notices between this one and the one before are not heard"),
+    (["mission", "", "", ""], "the robot has not received the notices in between"),
     (
         ["exchange", "offering", "partner lost", ""],
-        "the robot in its way stops in the very rounds in which it is offered a duty: a unit test takes it",
+        "the robot in its way stops in the rounds in which it is offered a duty; in a unit test",
     ),
     (
         ["exchange", "giving", "partner lost", ""],
-        "the mover stops in the very rounds in which the robot in its way has accepted its offer",
+        "the mover stops in the rounds in which the robot in its way has accepted its offer",
     ),
-    (["service", "done", "no robot", ""], "the robots are all gone after a task"),
+    (["service", "done", "no robot", ""], "all robots are gone after a task"),
     (
         ["service", "electing", "no answer", ""],
-        "a robot is heard, and answers none of the elections: a unit test of the access point takes it",
+        "a robot sends beacons but answers no election; in a unit test",
     ),
-    (
-        ["service", "", "closes", ""],
-        "a task is over in the very rounds in which robots gather or elect",
-    ),
+    (["service", "", "closes", ""], "a task ends in the rounds in which robots gather or elect"),
     (
         ["service", "electing", "withdraws", ""],
-        "the task is taken back in the very rounds in which robots elect",
+        "the task is taken back in the rounds in which robots elect",
     ),
     (
         ["service", "", "heard", ""],
-        "another access point has gone on although this one has not heard of it",
+        "another access point has gone on, and this one has not received that",
     ),
     (["user", "asking", "missed", ""], "the first access point stops before it announces a task"),
     (["user", "", "", ""], "the message from the access point is late or repeated"),
@@ -166,10 +159,10 @@ fn every_row_is_taken_or_has_a_reason() {
         "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test -p missions --test it coverage -->\n\n\
          # Coverage of the tables by tests\n\n\
          *For people who change the protocol: which rows of the tables do tests take, and why are the others there?*\n\n\
-         How many rows of each table some node takes in {} shipped scenarios, {} other missions (random, under stress, at \
-         their limits, those that have failed once), {} missions with random faults, and {configurations} \
-         configurations that are explored exhaustively. The explorer stands for routes and motion: it takes no rows of \
-         the control period for them.\n\n\
+         The table counts the rows that some node takes in {} shipped scenarios, {} other missions (random, under stress, \
+         at their limits, and those that failed once), {} missions with random faults, and {configurations} exhaustively \
+         explored configurations. The explorer replaces routes and motion, so it takes no rows of the control period for \
+         them.\n\n\
          | table | rows | scenarios | others | faults | explored | none |\n\
          | --- | --: | --: | --: | --: | --: | --: |\n",
         in_scenarios.missions, in_others.missions, in_storms.missions,
@@ -195,11 +188,11 @@ fn every_row_is_taken_or_has_a_reason() {
     for (table, counts) in tables {
         page += &format!("| {table} | {} |\n", counts.map(|count| count.to_string()).join(" | "));
     }
-    page += "\n## Rows that none of them takes\n\n| rows | for example | why they are there |\n| --: | --- | --- |\n";
+    page += "\n## Rows that none of them takes\n\n| rows | for example | when a node takes them |\n| --: | --- | --- |\n";
     for (why, rows) in &without {
         page += &format!("| {} | {} | {why} |\n", rows.len(), rows[0]);
     }
-    page += "\n## Messages\n\nIn how many missions each kind of message is received.\n\n\
+    page += "\n## Messages\n\nThe number of missions in which a node receives each kind of message.\n\n\
              | message | scenarios | others | otherwise |\n| --- | --: | --: | --- |\n";
     for &(kind, why) in SAID {
         let [here, there] =
@@ -233,6 +226,6 @@ const SAID: &[(&str, &str)] = &[
     ("shortage", ""),
     ("offer to exchange duties", ""),
     ("acceptance of an offer", ""),
-    ("refusal of an offer", "only where what two robots know differs: a unit test takes it"),
+    ("refusal of an offer", "only between robots with different information; in a unit test"),
     ("request to make way", ""),
 ];
