@@ -161,8 +161,7 @@ fn every_row_is_taken_or_has_a_reason() {
          *For people who change the protocol: which rows of the tables do tests take, and why are the others there?*\n\n\
          The table counts the rows that some node takes in {} shipped scenarios, {} other missions (random, under stress, \
          at their limits, and those that failed once), {} missions with random faults, and {configurations} exhaustively \
-         explored configurations. The explorer replaces routes and motion, so it takes no rows of the control period for \
-         them.\n\n\
+         explored configurations. The explorer replaces routes and motion and takes none of their rows.\n\n\
          | table | rows | scenarios | others | faults | explored | none |\n\
          | --- | --: | --: | --: | --: | --: | --: |\n",
         in_scenarios.missions, in_others.missions, in_storms.missions,
