@@ -5,8 +5,8 @@
 //! impacts accumulate before a finite instant: the run is *Zeno*.
 //!
 //! The model is the first example of Goebel, Sanfelice and Teel, *Hybrid dynamical systems* (2009),
-//! [doi:10.1109/MCS.2008.931718](https://doi.org/10.1109/MCS.2008.931718). The numbers, a drop of 1
-//! m with g = 9.81 m/s² and λ = 0.8, are those of Example 1.2 of the Hybrid Equations Toolbox,
+//! [doi:10.1109/MCS.2008.931718](https://doi.org/10.1109/MCS.2008.931718). The numbers, a drop of
+//! 1 m with g = 9.81 m/s² and λ = 0.8, are those of Example 1.2 of the Hybrid Equations Toolbox,
 //! [doi:10.1145/2461328.2461346](https://doi.org/10.1145/2461328.2461346).
 //!
 //! In closed form, the first fall takes τ = √(2h/g), the flight after impact k takes 2 λᵏ τ, and all

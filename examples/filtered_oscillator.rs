@@ -10,11 +10,11 @@
 //! locations, the numbers (k = 0.714286) and the initial set of the published model file. The run
 //! begins in the middle of this set, at (0.25, 0). The property to check is y < 0.5 up to 4 s.
 //!
-//! The switching instants have a closed form: with s = e⁻ᵗ the coordinates are polynomials, x = 0.7
-//! + (x₀ − 0.7) s² and y = −0.7 + (y₀ + 0.7) s, so the state meets the line where a quadratic
-//! polynomial of s is 0. All runs tend to a cycle through ±(a, −k a) with a = 0.7 √(2k − 1)/k, half
-//! of which takes ln (0.7 + k a)/(0.7 − k a). The outputs of the filters are compared with matrix
-//! exponentials.
+//! The switching instants have a closed form: with s = e⁻ᵗ the coordinates are polynomials,
+//! x = 0.7 + (x₀ − 0.7) s² and y = −0.7 + (y₀ + 0.7) s, so the state meets the line where a
+//! quadratic polynomial of s is 0. All runs tend to a cycle through ±(a, −k a) with a = 0.7
+//! √(2k − 1)/k, half of which takes ln (0.7 + k a)/(0.7 − k a). The outputs of the filters are
+//! compared with matrix exponentials.
 
 mod exhibit;
 mod oracle;

@@ -1,9 +1,9 @@
 //! # The gear shift
 //!
-//! A car accelerates at full throttle. In gear n the engine turns at ω = αₙ v, gives the torque T(ω)
-//! = T_m (1 − β (ω/ω_m − 1)²), and pushes the car with αₙ T(αₙ v) against rolling resistance and
-//! drag. When the engine reaches its limit of 600 rad/s, the gear box *selects* the lowest gear in
-//! which the engine stays below the limit.
+//! A car accelerates at full throttle. In gear n the engine turns at ω = αₙ v, gives the torque
+//! T(ω) = T_m (1 − β (ω/ω_m − 1)²), and pushes the car with αₙ T(αₙ v) against rolling resistance
+//! and drag. When the engine reaches its limit of 600 rad/s, the gear box *selects* the lowest gear
+//! in which the engine stays below the limit.
 //!
 //! Selecting is a location in which no time passes: all its transitions are *at once*, and
 //! priorities order them. So the car can start at any speed, and is in the right gear at (0, 1).
@@ -15,8 +15,8 @@
 //! a gear controller* (1998), [doi:10.1007/BFb0054178](https://doi.org/10.1007/BFb0054178).
 //!
 //! In every gear v̇ = a + bv + cv² with c < 0 < a, a Riccati equation with two real roots r > s. In
-//! closed form, from u to v it takes (F(v) − F(u))/(c (r − s)) seconds, where F(v) = ln((r − v)/(v −
-//! s)).
+//! closed form, from u to v it takes (F(v) − F(u))/(c (r − s)) seconds, where
+//! F(v) = ln((r − v)/(v − s)).
 
 mod exhibit;
 

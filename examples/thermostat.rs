@@ -1,8 +1,8 @@
 //! # The thermostat
 //!
 //! A room cools by ẋ = −0.1 x, and warms by ẋ = 5 − 0.1 x while the heater is on. Below 19 °C the
-//! heater may turn on, and below 18 °C it cannot stay off; above 21 °C it may turn off, and above 22
-//! °C it cannot stay on.
+//! heater may turn on, and below 18 °C it cannot stay off; above 21 °C it may turn off, and above
+//! 22 °C it cannot stay on.
 //!
 //! This is the thermostat of Figure 1 in Henzinger, *The theory of hybrid automata* (1996),
 //! [doi:10.1109/LICS.1996.561342](https://doi.org/10.1109/LICS.1996.561342), with its numbers. It is
@@ -10,8 +10,8 @@
 //! its runs are shown, the extremes: one takes every transition as soon as it may, the other as late
 //! as it can.
 //!
-//! In closed form, cooling from a to b takes 10 ln(a/b) seconds, and warming takes 10 ln((50 −
-//! a)/(50 − b)) seconds.
+//! In closed form, cooling from a to b takes 10 ln(a/b) seconds, and warming takes 10
+//! ln((50 − a)/(50 − b)) seconds.
 
 mod exhibit;
 
