@@ -70,12 +70,12 @@ macro_rules! for_each_automaton {
         let it: Automata = $automata;
         [
             $act("The duty of a robot", "duty", DUTY, &it.duty),
-            $act("The mission as one robot sees it", "mission", MISSION, &it.mission),
+            $act("The mission in the view of a robot", "mission", MISSION, &it.mission),
             $act("The exchange of duties", "exchange", EXCHANGE, &it.exchange),
             $act("The place of a robot in the tree", "place", PLACE, &it.attachment),
             $act("The control period of a robot", "control", CONTROL, &it.control),
             $act("The service of an access point", "service", SERVICE, &it.service),
-            $act("Whether a robot takes part", "attendance", ATTENDANCE, &it.attendance),
+            $act("The attendance of a robot", "attendance", ATTENDANCE, &it.attendance),
             $act("The control period of an access point", "rounds", ROUNDS, &it.rounds),
             $act("The user", "request", REQUEST, &it.request),
         ]
@@ -163,9 +163,8 @@ are taken by the access point to which the user sends the tasks.
 
 const ATTENDANCE: &str = "\
 Access points keep a record of each robot, from which the first one issues a roll in each control period. Robots that
-are present may move. Suspended and returning ones may not move, but neighbours still wait for their messages. Robots
-that are gone are obstacles. Between a roll that lets a robot move and one that lists it as gone, no roll is valid for
-both.
+are present may move. Suspended and returning robots may not move, but neighbours still wait for their messages. Robots
+that are gone are obstacles. A roll that lets a robot move and a roll that lists it as gone are never valid together.
 ";
 
 const ROUNDS: &str = "\
