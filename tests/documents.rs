@@ -109,11 +109,11 @@ const INTRODUCTION: &str = "\
 *For people who read or change the protocol: which automata do robots, access points and the user run?*
 
 Every robot runs the first five of these automata over its own state, every access point the next three (the second of
-them once for each robot), and the user the last. The pictures are drawn from the tables that run. A transition reads
-`event [guard] / reset (urgency, priority)`. All are taken *at once*; if several are enabled, the one with the smallest
-priority number is taken. A location shows its flow, its invariant after \"while\", and what is chosen there at each
-sample. `pleach diagram duty --format mermaid` prints an automaton as text, with every guard, reset and target;
-[coverage](coverage.md) counts the rows.
+them once for each robot), and the user the last. The pictures are drawn from the tables that run; select one to enlarge
+it. A transition reads `event [guard] / reset (urgency, priority)`. All are taken *at once*; if several are enabled, the
+one with the smallest priority number is taken. A location shows its flow, its invariant after \"while\", and what is
+chosen there at each sample. `pleach diagram duty --format mermaid` prints an automaton as text, with every guard, reset
+and target; [coverage](coverage.md) counts the rows.
 
 A guard combines quantities and propositions that the node measures of its own state. The source defines each name
 beside its measurement: those of [robots](../automaton/src/network/robot/facts.rs), of [access
@@ -182,7 +182,8 @@ fn chapter<L: Location, E: Event, S: Valuation>(
     text: &str,
     _: &Automaton<L, E, S>,
 ) -> String {
-    format!("## {title}\n\n{text}\n![The {name} automaton](pictures/{name}.svg)\n")
+    let picture = format!("pictures/{name}.svg");
+    format!("## {title}\n\n{text}\n[![The {name} automaton]({picture})]({picture})\n")
 }
 
 // ---- The run in the README ---------------------------------------------------------------------

@@ -19,9 +19,6 @@ use pleach::page::{self as pages, TrajectoryPage};
 
 pub use number::{number, numbers};
 
-/// The longest tables of an automaton that a page shows, in words: longer ones only repeat the drawing.
-const LONGEST_TABLES: usize = 110;
-
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
 
@@ -44,8 +41,6 @@ struct Drawing {
     diagram: String,
     /// What the pages of runs show of an automaton.
     automaton: Option<pages::Drawing>,
-    /// What stands below the diagram, in Markdown.
-    legend: String,
 }
 
 struct Run {
@@ -79,18 +74,14 @@ impl Exhibit {
         self.component(title, automaton).checked(&automaton.check())
     }
 
-    /// Shows an automaton that is a part of a composition: as a diagram and, where it is small, as tables.
+    /// Shows an automaton that is a part of a composition.
     pub fn component<L: Location, E: Event, S: Coordinates>(
         mut self,
         title: &'static str,
         automaton: &Automaton<L, E, S>,
     ) -> Self {
-        let tables = diagram::table(automaton);
-        let is_short = tables.split_whitespace().count() <= LONGEST_TABLES;
-        let legend = if is_short { tables } else { String::new() };
-        let diagram = diagram::svg(automaton);
-        let automaton = Some(pages::Drawing::of(automaton));
-        self.drawings.push(Drawing { title, diagram, automaton, legend });
+        let (diagram, automaton) = (diagram::svg(automaton), Some(pages::Drawing::of(automaton)));
+        self.drawings.push(Drawing { title, diagram, automaton });
         self
     }
 
@@ -105,8 +96,7 @@ impl Exhibit {
     /// Shows a composition: what joins its components.
     pub fn composition(mut self, title: &'static str, composition: &Composition) -> Self {
         let diagram = diagram::composition_svg(composition);
-        let legend = String::new();
-        self.drawings.push(Drawing { title, diagram, automaton: None, legend });
+        self.drawings.push(Drawing { title, diagram, automaton: None });
         self.checked(&composition.check())
     }
 

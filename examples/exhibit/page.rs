@@ -19,7 +19,7 @@ impl Exhibit {
         );
         for drawing in &self.drawings {
             let (title, picture) = (drawing.title, self.diagram_of(drawing));
-            page += &format!("\n![Diagram: {title}](pictures/{picture})\n\n{}", drawing.legend);
+            page += &format!("\n![Diagram: {title}](pictures/{picture})\n");
         }
         page += &match &*self.faults {
             [] => "\nThe checks before a run find nothing wrong.\n".to_owned(),
