@@ -12,6 +12,8 @@ use super::{Exhibit, number, numbers};
 
 /// The most jumps of a run that are shown.
 const MOST_JUMPS: usize = 6;
+/// The most components of a jump that are shown.
+const MOST_MOVES: usize = 3;
 
 impl Exhibit {
     /// Prints the exhibit and writes its drawings, and a page for each run, to `figures/NAME/`.
@@ -72,7 +74,7 @@ pub(super) fn story(trajectory: &Trajectory) -> Vec<String> {
 }
 
 fn told(trajectory: &Trajectory, jump: &JumpRecord) -> String {
-    let moves = jump.moves.iter().map(|one| {
+    let moves = jump.moves.iter().take(MOST_MOVES).map(|one| {
         let Participant { name, locations } = &trajectory.components()[one.component];
         let (source, target) = (&locations[one.source], &locations[one.target]);
         let who = if trajectory.components().len() > 1 { format!("{name}: ") } else { "".into() };
@@ -83,7 +85,9 @@ fn told(trajectory: &Trajectory, jump: &JumpRecord) -> String {
         };
         who + &way
     });
-    let moves: Vec<String> = moves.collect();
+    let others = jump.moves.len().saturating_sub(MOST_MOVES);
+    let moves: Vec<String> =
+        moves.chain((others > 0).then(|| format!("{others} others"))).collect();
     format!("({} s, {}) {} — {}", number(jump.at.t), jump.at.j, jump.label, moves.join(", "))
 }
 
