@@ -56,7 +56,7 @@ impl Robot {
         if self.is_late_comer() {
             return;
         }
-        for (robot, start) in self.site.starts_well_in_range(self.position) {
+        for (robot, start) in self.site.starts_well_in_range(self.body.position()) {
             if robot != self.id && self.neighbour(robot).is_none() {
                 self.missing.note(Wreck::heard(robot, start, 0));
             }
@@ -104,7 +104,7 @@ impl Robot {
     /// into contact in this control period.
     pub(super) fn may_meet(&self, lost: &Wreck) -> bool {
         let periods = self.period.saturating_sub(lost.heard_in);
-        self.site.could_meet((lost.place - self.position).norm(), periods)
+        self.site.could_meet((lost.place - self.body.position()).norm(), periods)
     }
 
     /// Where robots that do not take part were heard last, by this robot or by the nodes that it hears.
@@ -159,14 +159,14 @@ impl Robot {
         let astray = self.farthest_astray();
         self.trail.iter().map(move |&(_, center)| Disc {
             center,
-            radius: astray.max((center - self.position).norm()),
+            radius: astray.max((center - self.body.position()).norm()),
         })
     }
 
     /// Whether it is there; a move that was off may have led it farther.
     pub(super) fn is_near_trail(&self) -> bool {
         let leash = self.farthest_astray() * (1.0 + ROUNDING);
-        self.trail.iter().all(|(_, place)| (place - self.position).norm() <= leash)
+        self.trail.iter().all(|(_, place)| (place - self.body.position()).norm() <= leash)
     }
 
     /// The places of wrecks that are not heard in this control period, and how far they may be from there.
@@ -184,7 +184,7 @@ impl Robot {
     /// Where this robot keeps 2ρ from the wrecks that it could meet in a step, wherever they may be astray.
     pub(super) fn sides_of_wrecks(&self) -> impl Iterator<Item = HalfPlane> {
         let Settings { clearance, step_radius: step, errors, .. } = self.site.settings;
-        let (kept, own) = (clearance * (1.0 + MARGIN), self.position);
+        let (kept, own) = (clearance * (1.0 + MARGIN), self.body.position());
         let reach = 2.0 * errors.planning_clearance(kept) + step;
         let near = move |&(place, astray): &(Point, f64)| (place - own).norm() <= reach + astray;
         let sides = move |wreck| errors.half_planes_beside(own, wreck, clearance, kept);

@@ -109,7 +109,7 @@ impl<'a> RobotView<'a> {
 
     /// The number of control periods without progress.
     pub fn still_periods(self) -> u32 {
-        self.robot().still_periods
+        self.robot().body.still_periods()
     }
 
     /// The numbers of control periods without progress at which its guards change, ascending.
@@ -155,7 +155,7 @@ impl Robot {
     /// # Errors
     /// When a guard cannot be evaluated, or transitions do not come to an end.
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
-        self.stand_at(self.position, still_periods);
+        self.stand_at(self.body.position(), still_periods);
         self.begin_period()?;
         self.orphaned_periods = 0;
         self.deliberate()?;
@@ -189,7 +189,7 @@ impl Robot {
             known.heard_in = numbers.of(known.heard_in, PATIENCE_WITH_CHILDREN + 1);
             known.confirmed = known.confirmed.map(|it| numbers.of(it, OLDEST_CONFIRMATION));
         }
-        self.stand_at(self.position, still_periods);
+        self.stand_at(self.body.position(), still_periods);
         self.jump()?;
         self.begin_period()?;
         Ok(())
@@ -226,8 +226,7 @@ impl Robot {
         let Robot {
             // Told.
             id,
-            position,
-            still_periods,
+            body,
             duty,
             mission,
             exchange,
@@ -300,24 +299,13 @@ impl Robot {
             branches: _,
             trail: _,
             // Routes and motion.
-            velocity: _,
-            clock: _,
             routing: _,
             reservation: _,
             destination: _,
             target: _, // by the announcement
             waypoint: _,
             goes_by_link: _,
-            proposal: _,
-            told_move: _,
-            problem: _,
-            heard_moves: _,
-            must_judge_moves: _,
-            consents: _,
-            to_answer: _,
-            consented: _,
-            arrival: _,
-            resting_places: _,
+            negotiation: _,
             bodies: _,
         } = self;
         let has_reached = self.has_reached_task();
@@ -328,7 +316,10 @@ impl Robot {
         let silences: Vec<u8> = self.audible().map(|(_, silent)| silent).collect();
         let wait = self.longest_wait();
         vec![
-            format!("{:?}", (id, position, still_periods, parent, &**place, can_detach, silences)),
+            format!(
+                "{:?}",
+                (id, body.position(), body.still_periods(), parent, &**place, can_detach, silences)
+            ),
             format!("{:?}", (&**duty, posts_made, unused_periods, followed_post, below, closed)),
             format!("{:?}", (&**mission, election, bid, waited, agreement, team, stretched, wait)),
             format!("{led_from:?}"),

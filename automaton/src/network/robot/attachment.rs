@@ -164,7 +164,7 @@ impl Robot {
             let post = station.filter(|held| held.post.is_fixed()).map(|held| held.reference);
             post.filter(|&place| self.is_apart(from, place))
         };
-        let (here, there) = (self.position, neighbour.position());
+        let (here, there) = (self.body.position(), neighbour.position());
         let own = coming(self.duty.station(), here);
         let other = coming(neighbour.station(), there);
         let may_last = |from: Point, to: Point| self.site.walk(from, to) <= self.hard_length();
@@ -290,10 +290,10 @@ impl Robot {
     pub(super) fn could_move_post_to(&self, task: Point) -> bool {
         let Some(post) = self.duty.post().filter(|post| post.task.is_none()) else { return false };
         let reach = self.site.settings.arrival_radius();
-        let short_of = task + (self.position - task).cap_magnitude(reach);
+        let short_of = task + (self.body.position() - task).cap_magnitude(reach);
         let place = match self.site.free_space.contains(short_of) {
             true => short_of,
-            false => self.site.place_to_service(task, self.position),
+            false => self.site.place_to_service(task, self.body.position()),
         };
         let holds = |node: &Neighbour, limit: f64| self.site.walk(place, node.position()) <= limit;
         let mut nodes = self.neighbours.iter();

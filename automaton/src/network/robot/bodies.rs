@@ -61,7 +61,7 @@ impl Robot {
     /// A control period begins: where the bodies near it are.
     pub(super) fn see_bodies(&mut self, places: &[Point]) {
         let leash = STILL * self.clearance().min(self.site.settings.step_radius);
-        let (position, sight) = (self.position, self.site.radio.range() - leash);
+        let (position, sight) = (self.body.position(), self.site.radio.range() - leash);
         self.bodies.renew(places, leash, |place| (place - position).norm() > sight);
         if !places.is_empty() {
             self.note_change();

@@ -73,7 +73,7 @@ impl Holds<Duty> for Robot {
         for effect in effects {
             match effect {
                 DutyEffect::Report(event) => self.report(event),
-                DutyEffect::Restart => self.still_periods = 0,
+                DutyEffect::Restart => self.body.count_still_periods_anew(),
                 DutyEffect::Exchanged(partner) => {
                     self.remember_partner(partner);
                     self.is_displaced = true;
@@ -278,7 +278,7 @@ impl Robot {
     /// its place where it stands.
     fn station_at(&self, hop: &Hop) -> Station {
         let reference = hop.place.reference;
-        match (self.position - reference).norm() <= self.site.settings.arrival_radius() {
+        match (self.body.position() - reference).norm() <= self.site.settings.arrival_radius() {
             true => Station { post: hop.post, reference },
             false => self.station_here(hop.post),
         }

@@ -139,7 +139,7 @@ facts! {
             /// Control periods after which a post without a branch is given up.
             unused_patience: f64::from(PATIENCE_WITH_UNUSED_POSTS),
             /// τ: seconds since the last sample.
-            clock: robot.time_since_sample(),
+            clock: robot.body.clock(),
             /// Δt: seconds from sample to sample.
             period: robot.site.settings.period,
             /// By how much it is outside of the region that it was given at the last sample.
@@ -406,7 +406,7 @@ impl Robot {
         match (shift.active(), &*self.duty) {
             (Some(active), duty) => {
                 if matches!(duty, Duty::Shifting(_)) && !self.has_arrived() {
-                    facts.stalled = f64::from(self.still_periods);
+                    facts.stalled = f64::from(self.body.still_periods());
                 }
                 facts.subgroup_arrived =
                     self.knows_arrived(active) && self.has_given_up(active.end);
@@ -438,7 +438,7 @@ impl Robot {
             facts.stalled = match self.team {
                 Some(_) if facts.slack || facts.pending => facts.still,
                 Some(_) => 0.0,
-                None => f64::from(self.still_periods),
+                None => f64::from(self.body.still_periods()),
             };
         }
         if facts.first

@@ -188,7 +188,7 @@ impl Robot {
         let expected = self.neighbours.get_mut(self.heard_up_to as usize);
         if let Some(known) = expected
             && Arc::ptr_eq(&known.beacon, beacon)
-            && known.measured_at == self.position
+            && known.measured_at == self.body.position()
         {
             let is_back = known.note_heard(period, self.period);
             if is_back || self.awaits_confirmation && known.confirmed < confirmed {
@@ -208,7 +208,7 @@ impl Robot {
             Ok(at) => self.renew(at, period, confirmed, beacon),
             Err(at) => {
                 let neighbour =
-                    Neighbour::new(beacon, confirmed, period, self.position, &self.site);
+                    Neighbour::new(beacon, confirmed, period, self.body.position(), &self.site);
                 self.neighbours.insert(at, neighbour);
                 self.find(beacon.sender);
                 self.note_branches(beacon, period);
@@ -230,17 +230,18 @@ impl Robot {
         let is_back = known.note_heard(period, self.period);
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
-        let renewed = if (known.measured_at, known.position()) != (self.position, beacon.position) {
-            Neighbour::new(beacon, confirmed, period, self.position, &self.site)
-        } else if !is_same {
-            Neighbour { beacon: Arc::clone(beacon), confirmed, ..known.clone() }
-        } else {
-            known.confirmed = confirmed;
-            if is_back || self.awaits_confirmation && is_newer {
-                self.note_change();
-            }
-            return;
-        };
+        let renewed =
+            if (known.measured_at, known.position()) != (self.body.position(), beacon.position) {
+                Neighbour::new(beacon, confirmed, period, self.body.position(), &self.site)
+            } else if !is_same {
+                Neighbour { beacon: Arc::clone(beacon), confirmed, ..known.clone() }
+            } else {
+                known.confirmed = confirmed;
+                if is_back || self.awaits_confirmation && is_newer {
+                    self.note_change();
+                }
+                return;
+            };
         self.neighbours.replace(at, renewed);
         if !is_same {
             self.note_branches(beacon, period);
@@ -274,10 +275,10 @@ impl Robot {
         let (own, period) = (self.duty.post().map(|post| post.id), self.period);
         let Some(known) = self.neighbours.get_mut(at) else { return at };
         let (was_silent, was_heard) = (known.is_silent(), known.was_heard());
-        let has_moved = known.measured_at != self.position;
+        let has_moved = known.measured_at != self.body.position();
         let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
         if has_moved {
-            *known = known.seen_from(self.position, &self.site);
+            *known = known.seen_from(self.body.position(), &self.site);
         }
         known.silent_rounds = silent_rounds;
         let is_silent = known.is_silent();
@@ -334,7 +335,7 @@ impl Robot {
 
     /// The geodesic length of the link to a neighbour.
     pub(super) fn walk_to(&self, neighbour: &Neighbour) -> f64 {
-        neighbour.walk.or_measured(|| self.site.walk(self.position, neighbour.position()))
+        neighbour.walk.or_measured(|| self.site.walk(self.body.position(), neighbour.position()))
     }
 
     pub(super) fn neighbour(&self, id: NodeId) -> Option<&Neighbour> {

@@ -127,10 +127,10 @@ impl Robot {
     /// also none if its post cannot move.
     pub(super) fn leader_bid(&self, announcement: &Announcement, root: usize) -> Option<Bid> {
         let task = announcement.position;
-        let target = self.site.place_to_service(task, self.position);
+        let target = self.site.place_to_service(task, self.body.position());
         let gap = (target - task).norm();
-        let open_way = self.open_way(self.position, target);
-        let distance = open_way.unwrap_or_else(|| self.site.distance(self.position, target));
+        let open_way = self.open_way(self.body.position(), target);
+        let distance = open_way.unwrap_or_else(|| self.site.distance(self.body.position(), target));
         let unit = BID_RESOLUTION * self.site.usual.build;
         let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
         let may_come = announcement.last_resort.is_none() || self.could_move_post_to(task);
@@ -153,7 +153,7 @@ impl Robot {
     fn could_be_relieved(&self) -> bool {
         let task = self.duty.post().and_then(|post| self.task_at(post));
         task.is_none_or(|place| {
-            let away = (self.position - place).norm();
+            let away = (self.body.position() - place).norm();
             away.hypot(BESIDE * self.clearance()) <= self.site.settings.arrival_radius()
         })
     }

@@ -124,7 +124,9 @@ impl Robot {
     pub(super) fn links_hold_at(&self, post: Post) -> bool {
         let limit = self.hard_length();
         let has_parent = match post.parent {
-            Some(Anchor::Access(access)) => self.distance_to_access(access, self.position) <= limit,
+            Some(Anchor::Access(access)) => {
+                self.distance_to_access(access, self.body.position()) <= limit
+            }
             Some(Anchor::Post(_)) => {
                 self.neighbours.iter().any(|node| self.is_coming_to(node, post.parent))
             }
@@ -174,7 +176,8 @@ impl Robot {
         let branches = self.holder(post).into_iter().flat_map(|it| it.beacon.branches.iter());
         let mut unheard = branches
             .filter(|branch| branch.robot != self.id && self.neighbour(branch.robot).is_none());
-        unheard.all(|branch| self.site.walk(self.position, branch.place) <= self.hard_length())
+        unheard
+            .all(|branch| self.site.walk(self.body.position(), branch.place) <= self.hard_length())
     }
 
     pub(super) fn named_parent(&self) -> Option<NodeId> {
@@ -230,10 +233,10 @@ impl Robot {
     pub(super) fn index_in_crossing(&self, crossing: &[usize]) -> usize {
         let parent = self.parent.and_then(|node| node.checked_sub(self.site.robots));
         let reached = parent.and_then(|parent| crossing.iter().position(|&it| it == parent));
-        let distance = |&at: &usize| self.distance_to_access(crossing[at], self.position);
+        let distance = |&at: &usize| self.distance_to_access(crossing[at], self.body.position());
         let nearest =
             || (0..crossing.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
-        self.changes_over(crossing, reached.unwrap_or_else(nearest), self.position)
+        self.changes_over(crossing, reached.unwrap_or_else(nearest), self.body.position())
     }
 
     /// The index of the access point to which a robot is attached at `place` that was attached to that at `index`.

@@ -81,7 +81,7 @@ impl Holds<Mission> for Robot {
                 MissionEffect::Learn(announced) => {
                     self.epoch = announced.0.epoch();
                     let task = announced.1.position;
-                    self.target = Some(self.site.place_to_service(task, self.position));
+                    self.target = Some(self.site.place_to_service(task, self.body.position()));
                     self.announced = Some(announced);
                     self.forgetful = Arc::default();
                 }
@@ -98,7 +98,7 @@ impl Holds<Mission> for Robot {
                 MissionEffect::ForgetRoute => self.route = None,
                 MissionEffect::Agree(agreement) => self.agreement = agreement,
                 MissionEffect::KeepUp => self.epoch = self.notice_id().epoch(),
-                MissionEffect::Restart => self.still_periods = 0,
+                MissionEffect::Restart => self.body.count_still_periods_anew(),
                 MissionEffect::Stretch => self.stretched = true,
                 MissionEffect::Stay => self.stay(),
             }

@@ -7,7 +7,7 @@
 //! does not take part (`absence`) and where robots of other fleets are (`bodies`), keeps its place
 //! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`);
+//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`, `judging`);
 //! what its guards see of all this are `facts`. What its automata do stands in `duties`, `mission`, `exchange`,
 //! `lineage` and `control`, and where it goes in `target`; `step` takes inputs, `rounds` counts rounds, `skipped_work`
 //! is what need not be done again, and `view` what observers read.
@@ -17,6 +17,7 @@ mod absence;
 mod abstraction;
 mod attachment;
 mod bodies;
+mod body;
 mod confirmation;
 mod context;
 mod control;
@@ -24,6 +25,7 @@ mod duties;
 mod exchange;
 mod facts;
 mod hearing;
+mod judging;
 mod leader;
 mod lineage;
 mod links;
@@ -49,13 +51,11 @@ mod view;
 mod way;
 mod yielding;
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use pleach_continuous::Point;
 use pleach_continuous::geometry::Destination;
-use pleach_continuous::network::acceptance::Segment;
-use pleach_continuous::network::motion::MotionProblem;
-use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
     Agreement, Anchor, Bid, Confirmation, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId,
     Role,
@@ -94,11 +94,13 @@ use super::shared::Shared;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use bodies::Bodies;
+use body::Body;
 use context::context;
 use duties::Label;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
+use negotiation::Negotiation;
 use neighbours::Neighbours;
 use partner::{Answered, PastOffers};
 use places::places;
@@ -118,8 +120,7 @@ const POSTS_OF_A_PERIOD: u32 = 8;
 pub struct Robot {
     // What it touches in every round stands together at the beginning. With a message: where it is, and which of
     // its neighbours is expected to be heard next.
-    /// x.
-    position: Point,
+    body: Body,
     neighbours: Neighbours,
     /// The newest roll that it knows.
     roll: Roll,
@@ -150,11 +151,8 @@ pub struct Robot {
     /// Whether this is its first period.
     is_new: bool,
     is_quiet: bool,
-    must_judge_moves: bool,
 
     id: NodeId,
-    /// The clock τ, with τ̇ = 1 between jumps.
-    clock: f64,
     last_beacon: LastBeacon,
     /// What it reports to observers; no robot reads it.
     log: Vec<MissionEvent>,
@@ -176,8 +174,6 @@ pub struct Robot {
     branches: Arc<Vec<Branch>>,
     /// Where it has set off since its roll was called, each with the control period.
     trail: Vec<(u32, Point)>,
-    /// u, with ẋ = u between jumps.
-    velocity: Vector,
 
     // Where it is in its automata, and what the duty automaton jumps together with.
     duty: Current<Duty>,
@@ -255,21 +251,7 @@ pub struct Robot {
     waypoint: Option<Point>,
     /// Whether it follows a way that its link requires.
     goes_by_link: bool,
-    proposal: Option<Segment>,
-    /// Its proposal as it has been told.
-    told_move: Option<Segment>,
-    /// Problem (21) of the last sample, if it has one: the region in which the robot moves.
-    problem: Option<MotionProblem>,
-    heard_moves: Vec<(NodeId, Segment)>,
-    /// The robots that consent to its move, and those that wait for its own consent.
-    consents: Vec<NodeId>,
-    to_answer: Vec<NodeId>,
-    /// The robots to whose moves it has consented, each with the control period in which it did last.
-    consented: Vec<(NodeId, u32)>,
-    arrival: Point,
-    /// Where it has been, from the last place on, each off those before.
-    resting_places: VecDeque<Point>,
-    still_periods: u32,
+    negotiation: Negotiation,
     /// The robots of other fleets near it.
     bodies: Bodies,
 }
@@ -288,9 +270,7 @@ impl Robot {
             heard_all_in: None,
             is_new: true,
             is_behind: false,
-            position,
-            velocity: Vector::zeros(),
-            clock: site.settings.period,
+            body: Body::at(position, site.settings.period),
             duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
             label: Label::Alone,
             posts_made: 0,
@@ -355,17 +335,7 @@ impl Robot {
             destination: None,
             waypoint: None,
             goes_by_link: false,
-            proposal: None,
-            told_move: None,
-            problem: None,
-            heard_moves: Vec::new(),
-            must_judge_moves: false,
-            consents: Vec::new(),
-            to_answer: Vec::new(),
-            consented: Vec::new(),
-            arrival: position,
-            resting_places: VecDeque::from([position]),
-            still_periods: 0,
+            negotiation: Negotiation::default(),
             bodies: Bodies::default(),
             log: Vec::new(),
             site,
@@ -395,12 +365,14 @@ impl Robot {
     /// roll.
     pub(super) fn begin_again(&mut self) -> Result<(), TransitionError> {
         let role = self.role();
-        let fresh = Robot::new(self.id, self.position, self.rate, Arc::clone(&self.site));
+        let (site, place) = (Arc::clone(&self.site), self.body.position());
+        let fresh = Robot::new(self.id, place, self.rate, site);
         let known = std::mem::replace(self, fresh);
         self.forgotten_offers = known.offers().offers_made();
         (self.control, self.acts, self.round_count) =
             (known.control, known.acts, known.round_count);
-        (self.clock, self.is_new, self.posts_made) = (known.clock, false, known.posts_made);
+        self.body = Body::at(known.body.position(), known.body.clock());
+        (self.is_new, self.posts_made) = (false, known.posts_made);
         (self.roll, self.log) = (known.roll, known.log);
         self.join_in(known.period);
         self.report_role_after(role);
@@ -454,7 +426,7 @@ impl Robot {
     fn public_state(&self) -> Beacon {
         Beacon {
             sender: self.id,
-            position: self.position,
+            position: self.body.position(),
             bulletin: self.bulletin.clone(),
             announced: self.announced.clone(),
             forgetful: Arc::clone(&self.forgetful),

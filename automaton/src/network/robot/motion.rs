@@ -29,8 +29,6 @@ pub(super) const STILL: f64 = 0.3;
 /// Control periods without progress after which a robot measures its position anew, and one of the primary team makes
 /// room for others.
 pub(super) const PERSISTENCE: u32 = 4;
-/// A robot that returns to one of this many previous places counts as standing still.
-const RESTING_PLACES: usize = 8;
 /// A proposed move shorter than this share of σ is not made.
 const LEAST_MOVE: f64 = 1e-6;
 /// Relative slack when lengths are compared with limits: they are sums of rounded ones.
@@ -43,7 +41,7 @@ impl Robot {
         match *self.duty {
             Duty::Shifting(_) => self.active_subgroup().is_none(),
             Duty::Following(_) | Duty::Leading(_) if self.goes_on_while_recruiting() => {
-                self.still_periods >= PERSISTENCE
+                self.body.still_periods() >= PERSISTENCE
             }
             Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
             _ => true,
@@ -68,7 +66,7 @@ impl Robot {
 
     /// Whether the robot has not settled at `reference`: a move there may end as far off as it strays.
     pub(super) fn is_off(&self, reference: Point) -> bool {
-        self.is_apart(self.position, reference)
+        self.is_apart(self.body.position(), reference)
     }
 
     /// Whether a robot here has not settled there.
@@ -92,12 +90,12 @@ impl Robot {
         let Some(hop) = self.next_hop() else { return false };
         let radius = self.site.settings.arrival_radius();
         let near = |from: Point, place: Point| (from - place).norm() <= radius;
-        if !near(self.position, hop.place.reference) {
+        if !near(self.body.position(), hop.place.reference) {
             return self.queues_behind_arrived();
         }
         let services = self.task_at(&hop.post).is_none_or(|task| {
-            let way = self.site.free_space.geodesic(self.position, hop.place.reference);
-            near(self.position, task)
+            let way = self.site.free_space.geodesic(self.body.position(), hop.place.reference);
+            near(self.body.position(), task)
                 && way.is_some_and(|way| way.waypoints.iter().all(|&corner| near(corner, task)))
         });
         services
@@ -132,8 +130,7 @@ impl Robot {
 
     /// Solves the motion problem towards `goal` and keeps its solution as the proposal.
     fn approach(&mut self, goal: Option<Point>) {
-        (self.proposal, self.problem) = (None, None);
-        self.begin_negotiation();
+        self.negotiation.begin();
         let Some(goal) = goal else {
             if self.waypoint.take().is_some() {
                 self.note_change();
@@ -146,12 +143,11 @@ impl Robot {
         let Some(waypoint) = self.first_waypoint(goal) else { return };
         self.waypoint = Some(waypoint);
         let problem = self.motion_problem(waypoint);
-        let segment = Segment { from: self.position, to: self.solve(&problem).target };
+        let segment = Segment { from: self.body.position(), to: self.solve(&problem).target };
         if segment.length() > LEAST_MOVE * self.site.settings.step_radius
             && (self.has_strayed() || self.site.free_space.sees(segment.from, segment.to))
         {
-            self.proposal = Some(segment);
-            self.problem = Some(problem).filter(|problem| problem.admits(&self.position));
+            self.negotiation.propose(segment, problem);
         }
     }
 
@@ -159,15 +155,15 @@ impl Robot {
     /// its measurement is off, it goes where they hold if the way to its goal is shorter from there, and
     /// stays otherwise.
     fn solve(&self, problem: &MotionProblem) -> Motion {
-        if !self.site.settings.errors.are_none() && !problem.admits(&self.position) {
+        if !self.site.settings.errors.are_none() && !problem.admits(&self.body.position()) {
             let motion = problem.solve_from_outside();
             let way = |from: Point| {
                 let goal = self.destination.as_ref();
                 goal.map_or(0.0, |goal| self.site.free_space.distance_to(from, goal))
             };
-            return match way(motion.target) < way(self.position) {
+            return match way(motion.target) < way(self.body.position()) {
                 true => motion,
-                false => Motion { target: self.position, ..motion },
+                false => Motion { target: self.body.position(), ..motion },
             };
         }
         match self.site.settings.motion_solver {
@@ -178,21 +174,21 @@ impl Robot {
 
     /// Whether the robot measures itself outside of 𝒲_f, as errors of position and motion may have it.
     pub(super) fn has_strayed(&self) -> bool {
-        !self.site.settings.errors.are_none() && !self.site.free_space.contains(self.position)
+        !self.site.settings.errors.are_none()
+            && !self.site.free_space.contains(self.body.position())
     }
 
     /// By how much the robot is outside of the region that the motion problem has given it at the
     /// last sample: cell, trust region, posts and links; 0 if it stands still.
     pub(super) fn outside(&self) -> f64 {
-        let margin = self.problem.as_ref().map_or(0.0, |it| it.smallest_margin(&self.position));
-        (-margin).max(0.0)
+        self.negotiation.outside(self.body.position())
     }
 
     /// Where the robot stands or, if it has strayed, the free place nearest to it.
     pub(super) fn free_place(&self) -> Point {
         match self.has_strayed() {
-            true => self.site.free_space.nearest(self.position),
-            false => self.position,
+            true => self.site.free_space.nearest(self.body.position()),
+            false => self.body.position(),
         }
     }
 
@@ -202,11 +198,11 @@ impl Robot {
         let mut half_planes = self.cell(waypoint, step);
         half_planes.extend(self.sides_of_wrecks());
         half_planes.extend(self.linearised_load());
-        let mut discs = vec![Disc { center: self.position, radius: step }];
+        let mut discs = vec![Disc { center: self.body.position(), radius: step }];
         discs.extend(self.discs_of_trail());
         discs.extend(self.post_discs());
         discs.extend(self.tree_links().iter().flat_map(|link| self.link_discs(link)));
-        MotionProblem { position: self.position, waypoint, half_planes, discs }
+        MotionProblem { position: self.body.position(), waypoint, half_planes, discs }
     }
 
     /// The cell (18), with what errors of position and motion add to it.
@@ -219,12 +215,15 @@ impl Robot {
             .iter()
             .filter(|n| !n.is_access_point() && n.distance < near)
             .map(Neighbour::position)
-            .chain(self.bodies.places().filter(|place| (place - self.position).norm() < near))
+            .chain(
+                self.bodies.places().filter(|place| (place - self.body.position()).norm() < near),
+            )
             .collect();
-        let mut half_planes = errors.voronoi_half_planes(self.position, &close, clearance, kept);
+        let mut half_planes =
+            errors.voronoi_half_planes(self.body.position(), &close, clearance, kept);
         half_planes.extend(match self.has_strayed() {
-            true => errors.wall_half_planes(&site.workspace, self.position, step, clearance),
-            false => cell::convex_region(&site.free_space, self.position, waypoint, step),
+            true => errors.wall_half_planes(&site.workspace, self.body.position(), step, clearance),
+            false => cell::convex_region(&site.free_space, self.body.position(), waypoint, step),
         });
         half_planes
     }
@@ -237,7 +236,7 @@ impl Robot {
         for link in self.routing.routes() {
             let Some(receiver) = self.neighbour(link.to) else { continue };
             if receiver.distance > 0.0 {
-                let direction = (self.position - receiver.position()) / receiver.distance;
+                let direction = (self.body.position() - receiver.position()) / receiver.distance;
                 let slope = -self.site.link.slope(receiver.distance) / link.reliability;
                 gradient += direction * (link.share * slope);
             }
@@ -248,7 +247,7 @@ impl Robot {
         }
         let normal = gradient / steepness;
         let room = (FULL_LOAD - self.routing.load()).max(0.0) / steepness;
-        Some(HalfPlane::new(normal, normal.dot(&self.position.coords) + room))
+        Some(HalfPlane::new(normal, normal.dot(&self.body.position().coords) + room))
     }
 
     /// The holder of a fixed post stays within δ of it, and of the task serviced from it.
@@ -259,7 +258,7 @@ impl Robot {
             (self.site.settings.leash_radius(), self.site.settings.errors.motion);
         station.map(|station| station.reference).into_iter().chain(task).map(move |center| Disc {
             center,
-            radius: radius.max((center - self.position).norm() - motion),
+            radius: radius.max((center - self.body.position()).norm() - motion),
         })
     }
 
@@ -269,11 +268,11 @@ impl Robot {
     fn link_discs(&self, link: &TreeLink) -> impl Iterator<Item = Disc> {
         let neighbour = self.neighbour(link.to);
         let path = neighbour
-            .and_then(|node| self.site.free_space.geodesic(self.position, node.position()));
+            .and_then(|node| self.site.free_space.geodesic(self.body.position(), node.position()));
         let reached = ROUNDING * self.site.workspace.extent();
         let (limit, motion) = (link.limit, self.site.settings.errors.motion);
         path.into_iter().flat_map(|path| path.waypoints).filter_map(move |center| {
-            let distance = (center - self.position).norm();
+            let distance = (center - self.body.position()).norm();
             let radius = match distance > limit * (1.0 + ROUNDING) {
                 true => distance - motion,
                 false => limit.max(distance),
@@ -287,11 +286,11 @@ impl Robot {
     /// that wants to go on and cannot measures itself anew from time to time: with other errors it may.
     pub(super) fn correct_position(&mut self, position: Point) {
         let tries_again =
-            self.waypoint.is_some() && (self.still_periods + 1).is_multiple_of(PERSISTENCE);
-        let has_moved = self.velocity != Vector::zeros() || tries_again;
-        let off = (position - self.position).norm();
+            self.waypoint.is_some() && (self.body.still_periods() + 1).is_multiple_of(PERSISTENCE);
+        let has_moved = self.body.is_moving() || tries_again;
+        let off = (position - self.body.position()).norm();
         if has_moved || off > 2.0 * self.site.settings.errors.position * (1.0 + ROUNDING) {
-            (self.position, self.arrival) = (position, position);
+            self.body.correct(position);
             self.note_change();
         }
     }
@@ -299,29 +298,19 @@ impl Robot {
     /// The move is certified: eq. (23) until the next sample.
     pub(super) fn set_off(&mut self) {
         let segment = self.own_move();
-        let step = self.site.settings.step_radius;
-        // Moving back and forth between a few places counts as standing still, too.
-        let leash = (STILL * self.clearance().min(step)).max(self.stray());
-        if self.resting_places.iter().all(|place| (segment.to - place).norm() > leash) {
-            self.resting_places.truncate(RESTING_PLACES - 1);
-            self.resting_places.push_front(segment.to);
-            self.still_periods = 0;
-        } else {
-            self.still_periods = self.still_periods.saturating_add(1);
-        }
+        let settings = &self.site.settings;
+        let leash = (STILL * self.clearance().min(settings.step_radius)).max(self.stray());
+        self.body.set_off(segment, leash, settings.period);
         match self.trail.last_mut() {
             Some((period, place)) if *place == segment.from => *period = self.period,
             _ => self.trail.push((self.period, segment.from)),
         }
-        self.velocity = (segment.to - segment.from) / self.site.settings.period;
-        self.arrival = segment.to;
         self.note_period_boundary();
     }
 
     /// It stays where it is until the next sample, which every certified move allows.
     pub(super) fn stay(&mut self) {
-        self.velocity = Vector::zeros();
-        self.arrival = self.position;
+        self.body.stay();
         self.note_change();
     }
 
@@ -330,7 +319,7 @@ impl Robot {
         self.period = self.period.saturating_add(1);
         self.note_period_boundary();
         self.posts_made = 0;
-        self.velocity = Vector::zeros();
-        (self.clock, self.is_behind) = (0.0, false);
+        self.body.restart_clock();
+        self.is_behind = false;
     }
 }

@@ -1,149 +1,173 @@
-//! Negotiation: proposals of moves, objections to them, and consent (Sec. IV, Algorithm 5).
+//! Negotiation: the move that a robot proposes, what it receives of the moves of others, and who consents (Sec. IV,
+//! Algorithm 5).
 //!
 //! A robot *relies* on those to which it sends and on its parent in the tree: their moves change its
-//! load and the length of its link. A robot that hears of moves on which its load could depend judges
-//! them all together, whichever of them are carried out, with its own. If it could be overloaded, or
-//! its link to the tree overstretched, it objects; a mover that hears an objection halves its move, and so
-//! does the robot itself if its own move is part of the cause. Otherwise it consents. Shrinking moves never
-//! creates a new objection, so that consent to a move is consent to what is left of it.
+//! load and the length of its link. A robot that receives moves on which its load could depend judges
+//! them all together ([`judging`](super::judging)). It objects or consents; a mover that receives an objection halves its
+//! move. Shrinking moves never creates a new objection, so that consent to a move is consent to what is left of it.
 //!
 //! A robot moves only with the consent of all that rely on it, or of a *witness* where nobody does: so there
 //! is always a node that knows where a robot is that stops. A message that is lost takes away the
-//! right to move and never gives one: a robot whose proposal is not heard stays where others take it to
+//! right to move and never gives one: a robot whose proposal is not received stays where others take it to
 //! be, and a robot that does not know where those are on which it relies consents to nothing and
 //! stays.
 
-use pleach_continuous::network::acceptance::{Capsule, Segment, is_acceptable, worst_load_within};
+use pleach_continuous::Point;
+use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::network::motion::MotionProblem;
+use pleach_discrete::network::NodeId;
 use pleach_discrete::network::consent::all_consent;
-use pleach_discrete::network::{NodeId, Stage};
 
-use super::Robot;
-use super::hearing::Neighbour;
-use super::motion::ROUNDING;
-use super::places::places;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
-use crate::network::roll::Wreck;
 
-impl Robot {
-    /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.
-    pub(super) fn begin_negotiation(&mut self) {
-        self.heard_moves.clear();
+/// The moves of a robot and of its neighbours in the negotiation of a control period.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Negotiation {
+    /// The move that the robot intends.
+    proposal: Option<Segment>,
+    /// Its proposal as it was sent last.
+    sent: Option<Segment>,
+    /// Problem (21) of the last sample, if the robot was in its region: it moves there.
+    problem: Option<MotionProblem>,
+    /// The moves that others propose.
+    moves: Vec<(NodeId, Segment)>,
+    /// Whether moves have changed since they were judged.
+    must_judge: bool,
+    /// The nodes that consent to its move.
+    consents: Vec<NodeId>,
+    /// The robots that wait for its own consent.
+    to_answer: Vec<NodeId>,
+    /// The robots to whose moves it has consented, each with the control period in which it did last.
+    consented: Vec<(NodeId, u32)>,
+}
+
+impl Negotiation {
+    /// A negotiation begins: nothing is proposed, nothing has been received of others, and nobody consents.
+    pub fn begin(&mut self) {
+        (self.proposal, self.sent, self.problem) = (None, None, None);
+        self.moves.clear();
         self.consents.clear();
         self.to_answer.clear();
-        self.told_move = None;
-        self.must_judge_moves = true;
+        self.must_judge = true;
     }
 
-    /// Sends its proposed move, if it has one, until all that rely on it consent.
-    pub(super) fn tell_proposal(&mut self, outputs: &mut NodeOutputs) {
+    /// The robot intends this move, to a solution of a problem.
+    pub fn propose(&mut self, segment: Segment, problem: MotionProblem) {
+        self.proposal = Some(segment);
+        self.problem = Some(problem).filter(|problem| problem.admits(&segment.from));
+    }
+
+    /// Whether the robot intends a move.
+    pub const fn has_proposal(&self) -> bool {
+        self.proposal.is_some()
+    }
+
+    /// Where the robot would be that is here.
+    pub fn own_move(&self, position: Point) -> Segment {
+        self.proposal.unwrap_or(Segment::still(position))
+    }
+
+    /// By how much a robot here is outside of the region in which it moves; 0 if it stands still.
+    pub fn outside(&self, position: Point) -> f64 {
+        let margin =
+            self.problem.as_ref().map_or(0.0, |problem| problem.smallest_margin(&position));
+        (-margin).max(0.0)
+    }
+
+    /// Sends the proposed move, if there is one, until all that rely on the robot consent; where nobody does, with the
+    /// witness that it requests.
+    pub fn send(
+        &mut self,
+        period: u32,
+        reliant: &[NodeId],
+        witness: Option<NodeId>,
+        outputs: &mut NodeOutputs,
+    ) {
         if let Some(segment) = self.proposal
-            && (self.told_move != self.proposal || !self.has_all_consents())
+            && (self.sent != self.proposal || !self.has_consents_of(reliant))
         {
-            self.told_move = self.proposal;
-            let (period, witness) = (self.period, self.witness());
+            self.sent = self.proposal;
             outputs.broadcast(Message::Proposal { period, segment, witness });
         }
     }
 
-    /// Where this robot would be.
-    pub(super) fn own_move(&self) -> Segment {
-        self.proposal.unwrap_or(Segment::still(self.position))
-    }
-
-    /// The proposal of a neighbour is received. Every robot that hears it knows where the sender is and how
-    /// far it may go.
-    pub(super) fn hear_proposal(
-        &mut self,
-        from: NodeId,
-        segment: Segment,
-        witness: Option<NodeId>,
-    ) {
-        self.out_of_sight.note(Wreck::setting_off(from, segment, self.period));
-        if self.roll.absent.contains(from) {
-            self.note_change();
-        }
-        let is_asked = self.relies_on(from) || witness == Some(self.id);
-        if is_asked && !self.to_answer.contains(&from) {
+    /// A neighbour proposes a move, and waits for the consent of this robot or not.
+    pub fn receive_proposal(&mut self, from: NodeId, segment: Segment, waits: bool) {
+        if waits && !self.to_answer.contains(&from) {
             self.to_answer.push(from);
         }
-        match self.heard_moves.iter_mut().find(|(mover, _)| *mover == from) {
+        match self.moves.iter_mut().find(|(mover, _)| *mover == from) {
             // Moves only shrink within a control period: a longer one is late.
             Some((_, known)) if known.length() <= segment.length() => return,
             Some((_, known)) => *known = segment,
-            None => self.heard_moves.push((from, segment)),
+            None => self.moves.push((from, segment)),
         }
-        self.must_judge_moves = true;
+        self.must_judge = true;
     }
 
-    fn move_of(&self, node: NodeId) -> Segment {
-        let heard = self.heard_moves.iter().find(|(from, _)| *from == node);
-        match (heard, self.neighbour(node)) {
-            (Some((_, segment)), _) => *segment,
-            (None, Some(neighbour)) => Segment::still(neighbour.position()),
-            (None, None) => Segment::still(self.position),
-        }
+    /// The move that a neighbour proposes.
+    pub fn move_of(&self, node: NodeId) -> Option<Segment> {
+        self.moves.iter().find(|(from, _)| *from == node).map(|&(_, segment)| segment)
     }
 
-    /// Whether the robot could be harmed by a move of this node: it sends to it, or may have to be
-    /// told that it still may, or is attached to it in the tree.
-    fn relies_on(&self, node: NodeId) -> bool {
-        self.reservation.has_asked(node) || self.tree_parent() == Some(node)
+    /// The neighbours that propose a move.
+    pub fn movers(&self) -> impl Iterator<Item = NodeId> {
+        self.moves.iter().map(|&(mover, _)| mover)
     }
 
-    /// The robots that rely on this one, as far as it knows: those to which it has granted a flow, and
-    /// those that report that they are attached to it.
-    fn reliant(&self) -> impl Iterator<Item = NodeId> {
-        self.reservation.senders().chain(self.tree_children().map(Neighbour::id))
-    }
-
-    /// The node that it asks to be the witness of its move, where nobody relies on it: its parent if that is
-    /// heard. While it makes no progress, the nodes that it hears take turns.
-    fn witness(&self) -> Option<NodeId> {
-        if self.reliant().next().is_some() {
-            return None;
-        }
-        let heard = self.neighbours.iter().filter(|known| known.heard_in == self.period);
-        let mut candidates: Vec<NodeId> = heard.map(Neighbour::id).collect();
-        candidates.sort_by_key(|&node| Some(node) != self.parent); // the parent first
-        let turn = self.still_periods as usize % candidates.len().max(1);
-        candidates.get(turn).copied()
-    }
-
-    /// A node that relies on this one, or is its witness, consents to its move.
-    pub(super) fn hear_consent(&mut self, from: NodeId) {
+    /// A node that relies on the robot, or is its witness, consents to its move.
+    pub fn receive_consent(&mut self, from: NodeId) {
         if !self.consents.contains(&from) {
             self.consents.push(from);
         }
     }
 
+    /// Whether all of these consent to the move, and one node at least.
+    fn has_consents_of(&self, reliant: &[NodeId]) -> bool {
+        !self.consents.is_empty() && all_consent(reliant.iter().copied(), &self.consents)
+    }
+
     /// Without the consent of all that rely on it, and of one node at least, the robot stays.
-    pub(super) fn stay_without_consent(&mut self) {
-        if !self.has_all_consents() {
-            self.proposal = None;
+    pub fn stay_without_consent(&mut self, reliant: &[NodeId]) {
+        if !self.has_consents_of(reliant) {
+            self.withdraw();
         }
     }
 
-    fn has_all_consents(&self) -> bool {
-        !self.consents.is_empty() && all_consent(self.reliant(), &self.consents)
+    /// The robot gives its move up.
+    pub const fn withdraw(&mut self) {
+        self.proposal = None;
     }
 
-    /// Judges the moves that it has heard of together with its own: objects, and halves its own, or
-    /// consents. Moves that are as they were when it accepted them are not judged again.
-    pub(super) fn judge_moves(&mut self, outputs: &mut NodeOutputs) {
-        if self.heard_moves.is_empty() && self.proposal.is_none() {
-            self.must_judge_moves = false;
-            return;
-        }
-        if self.is_unsure() {
-            self.proposal = None;
-            return;
-        }
-        if self.must_judge_moves && !self.accepts_moves(outputs) {
-            return;
-        }
-        self.must_judge_moves = false;
-        let period = self.period;
+    /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
+    /// gives it up. A move that leads back into the region from outside is made in whole or not at all: half
+    /// of it might not gain what errors may lose.
+    pub fn yield_to_objection(&mut self, is_last_chance: bool) {
+        self.must_judge |= self.proposal.is_some();
+        let may_shrink = self.problem.is_some() && !is_last_chance;
+        self.proposal = self.proposal.filter(|_| may_shrink).map(|segment| segment.halved());
+    }
+
+    /// Whether the robot neither proposes a move nor has received any.
+    pub const fn is_idle(&self) -> bool {
+        self.moves.is_empty() && self.proposal.is_none()
+    }
+
+    /// Whether the robot neither proposes a move nor has received one that it has not answered.
+    pub const fn has_nothing_to_judge(&self) -> bool {
+        let is_answered = !self.must_judge && self.to_answer.is_empty();
+        self.proposal.is_none() && (self.moves.is_empty() || is_answered)
+    }
+
+    /// Whether moves are not as they were when they were accepted.
+    pub const fn must_judge(&self) -> bool {
+        self.must_judge
+    }
+
+    /// All moves are acceptable: consents to those that wait for that.
+    pub fn consent(&mut self, period: u32, outputs: &mut NodeOutputs) {
+        self.must_judge = false;
         for mover in std::mem::take(&mut self.to_answer) {
             outputs.send(mover, Message::Consent { period });
             self.consented.retain(|&(other, _)| other != mover);
@@ -151,149 +175,135 @@ impl Robot {
         }
     }
 
-    /// Whether all moves together are acceptable; if not, those that could be the cause are told so. Its own
-    /// move is one of them unless those of others are too much by themselves.
-    fn accepts_moves(&mut self, outputs: &mut NodeOutputs) -> bool {
-        let (own, still) = (self.own_move(), Segment::still(self.position));
-        let (is_overloaded, overstretched) =
-            (self.is_overloaded(own), self.overstretched_parent(own));
-        if !is_overloaded && overstretched.is_none() {
-            return true;
-        }
-        let overloading = if is_overloaded { self.overloading_movers(own) } else { Vec::new() };
-        let period = self.period;
-        for &(mover, _) in &self.heard_moves {
-            if overstretched == Some(mover) || overloading.contains(&mover) {
-                outputs.send(mover, Message::Objection { period });
-            }
-        }
-        let others_exceed_limits =
-            self.is_overloaded(still) || self.overstretched_parent(still).is_some();
-        if !others_exceed_limits || self.is_last_chance() {
-            self.yield_to_objection();
-        }
-        false
+    /// Whether the robot has consented to a move of this node in a control period or later.
+    pub fn has_consented_since(&self, node: NodeId, period: u32) -> bool {
+        self.consented.iter().any(|&(mover, consented)| mover == node && consented >= period)
+    }
+}
+
+#[cfg(test)]
+impl Negotiation {
+    /// The robot intends this move instead.
+    pub const fn intends(&mut self, segment: Option<Segment>) {
+        self.proposal = segment;
     }
 
-    fn is_last_chance(&self) -> bool {
-        self.stage() == Stage::Negotiation && self.round_count.is_last_chance()
+    /// The move that the robot intends.
+    pub const fn proposal(&self) -> Option<Segment> {
+        self.proposal
     }
 
-    /// Whether it does not know where a robot is on which it relies.
-    pub(super) fn is_unsure(&self) -> bool {
-        let mut relied_on = self.routing.routes().map(|link| link.to).chain(self.tree_parent());
-        relied_on.any(|node| !self.knows_place_of(node))
+    /// The region in which it moves.
+    pub const fn problem(&self) -> Option<&MotionProblem> {
+        self.problem.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NOW: u32 = 50;
+
+    fn to(x: f64) -> Segment {
+        Segment { from: Point::origin(), to: Point::new(x, 0.0) }
     }
 
-    /// Whether a node on which this one relies is where it was received last.
-    pub(super) fn knows_place_of(&self, node: NodeId) -> bool {
-        places!(self).are_known_of(node, self.reservation.sends_to(node))
+    /// The problem of a robot that may go anywhere, or nowhere.
+    fn problem(admits: bool) -> MotionProblem {
+        use pleach_continuous::Vector;
+        use pleach_continuous::geometry::HalfPlane;
+        let (position, waypoint) = (Point::origin(), Point::new(1.0, 0.0));
+        let beyond = HalfPlane::new(Vector::new(1.0, 0.0), -1.0);
+        let half_planes = if admits { Vec::new() } else { vec![beyond] };
+        MotionProblem { position, waypoint, half_planes, discs: Vec::new() }
     }
 
-    /// Whether the robot neither proposes a move nor has heard of one that it has not answered.
-    pub(super) fn has_no_moves_to_judge(&self) -> bool {
-        let is_answered = !self.must_judge_moves && self.to_answer.is_empty();
-        self.proposal.is_none() && (self.heard_moves.is_empty() || is_answered)
+    fn proposing(admits: bool) -> Negotiation {
+        let mut negotiation = Negotiation::default();
+        negotiation.begin();
+        negotiation.propose(to(0.1), problem(admits));
+        negotiation
     }
 
-    /// Where a robot that makes this move may measure itself afterwards. One that moves may be off by 2e + m; one that
-    /// stays although it wants to go on may measure itself again, and be off by 2e; a parked one stays where it is
-    /// known to be.
-    fn reach_of(&self, axis: Segment, is_parked: bool) -> Capsule {
-        let radius = match (axis.length() > 0.0, is_parked) {
-            (true, _) => self.stray(),
-            (false, false) => 2.0 * self.site.settings.errors.position,
-            (false, true) => 0.0,
+    fn sends(negotiation: &mut Negotiation, reliant: &[NodeId]) -> usize {
+        let mut outputs = NodeOutputs::of(0);
+        negotiation.send(NOW, reliant, None, &mut outputs);
+        outputs.drain_sent().count()
+    }
+
+    #[test]
+    fn a_proposal_is_sent_until_all_have_consented_and_whenever_it_changes() {
+        let mut negotiation = proposing(true);
+        let reliant = [1];
+        assert_eq!([sends(&mut negotiation, &reliant), sends(&mut negotiation, &reliant)], [1, 1]);
+        negotiation.receive_consent(1);
+        assert_eq!(sends(&mut negotiation, &reliant), 0);
+        negotiation.yield_to_objection(false);
+        assert_eq!([sends(&mut negotiation, &reliant), sends(&mut negotiation, &reliant)], [1, 0]);
+    }
+
+    #[test]
+    fn a_robot_moves_with_the_consent_of_all_that_rely_on_it_and_of_one_at_least() {
+        let moves = |reliant: &[NodeId], consents: &[NodeId]| {
+            let mut negotiation = proposing(true);
+            consents.iter().for_each(|&from| negotiation.receive_consent(from));
+            negotiation.stay_without_consent(reliant);
+            negotiation.proposal().is_some()
         };
-        Capsule { axis, radius }
+        assert!(!moves(&[1], &[]) && !moves(&[1], &[2]) && !moves(&[], &[]));
+        assert!(moves(&[1], &[1]) && moves(&[1], &[2, 1, 1]) && moves(&[], &[4]));
     }
 
-    fn is_overloaded(&self, own: Segment) -> bool {
-        self.is_too_much(self.worst_load_without(own, &[]))
+    #[test]
+    fn an_objection_halves_a_move_and_at_last_ends_it() {
+        let mut negotiation = proposing(true);
+        negotiation.consent(NOW, &mut NodeOutputs::of(0));
+        negotiation.yield_to_objection(false);
+        assert_eq!(negotiation.own_move(Point::origin()), to(0.1).halved());
+        assert!(negotiation.must_judge(), "its own move has changed");
+        negotiation.yield_to_objection(true);
+        assert_eq!(negotiation.proposal(), None);
     }
 
-    fn is_too_much(&self, worst: f64) -> bool {
-        !is_acceptable(worst, self.routing.load() + ROUNDING)
+    /// Half of a way back into the region might gain less than errors lose.
+    #[test]
+    fn a_move_that_begins_outside_of_its_region_is_made_in_whole_or_not_at_all() {
+        let mut negotiation = proposing(false);
+        assert_eq!(negotiation.outside(Point::origin()), 0.0, "no region is kept to");
+        negotiation.yield_to_objection(false);
+        assert_eq!(negotiation.proposal(), None);
     }
 
-    /// Its load at worst if these of the nodes to which it sends stay where they are.
-    fn worst_load_without(&self, own: Segment, staying: &[NodeId]) -> f64 {
-        let own = self.reach_of(own, self.is_parked());
-        self.worst_load(own, |node| {
-            let rests = |known: &Neighbour| known.is_access_point() || known.beacon.parked;
-            let is_parked = self.neighbour(node).is_none_or(rests);
-            let whole = self.move_of(node);
-            let stays = staying.contains(&node);
-            self.reach_of(if stays { Segment::still(whole.from) } else { whole }, is_parked)
-        })
+    #[test]
+    fn moves_that_are_received_only_shrink() {
+        let mut negotiation = Negotiation::default();
+        negotiation.begin();
+        negotiation.receive_proposal(5, to(0.08), false);
+        negotiation.consent(NOW, &mut NodeOutputs::of(0));
+        negotiation.receive_proposal(5, to(0.09), false);
+        assert_eq!((negotiation.move_of(5), negotiation.must_judge()), (Some(to(0.08)), false));
+        negotiation.receive_proposal(5, to(0.04), false);
+        assert_eq!((negotiation.move_of(5), negotiation.must_judge()), (Some(to(0.04)), true));
+        assert_eq!(negotiation.movers().collect::<Vec<_>>(), [5]);
     }
 
-    /// The worst load h_i whichever of the proposed moves are carried out, and wherever robots measure
-    /// themselves then.
-    fn worst_load(&self, own: Capsule, move_of: impl Fn(NodeId) -> Capsule) -> f64 {
-        let routes = self.routing.routes();
-        let receivers: Vec<_> = routes.map(|link| (link.flow(), move_of(link.to))).collect();
-        worst_load_within(own, &receivers, &self.site.link)
-    }
-
-    /// The receivers whose moves add most to its load, as many as would have to stay for it not to be overloaded. A
-    /// robot whose least move is too much, since the reliability of its link falls steeply there, holds up no other.
-    fn overloading_movers(&self, own: Segment) -> Vec<NodeId> {
-        let receives = |mover: &NodeId| self.routing.routes().any(|link| link.to == *mover);
-        let movers = self.heard_moves.iter().map(|&(mover, _)| mover).filter(receives);
-        let mut by_share: Vec<(f64, NodeId)> =
-            movers.map(|mover| (self.worst_load_without(own, &[mover]), mover)).collect();
-        by_share.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-        let mut staying = Vec::new();
-        for (_, mover) in by_share {
-            staying.push(mover);
-            if !self.is_too_much(self.worst_load_without(own, &staying)) {
-                break;
-            }
-        }
-        staying
-    }
-
-    /// By how much at least each end that moves has to shorten a link of this length. What measurements
-    /// and the moves of its ends add to its limit does no harm, as the limit allows for it, but from there
-    /// on a link must truly get no longer.
-    fn shortening(&self, limit: f64, length: f64) -> f64 {
-        let is_far_too_long = length > (limit + 2.0 * self.stray()) * (1.0 + ROUNDING);
-        if is_far_too_long { self.site.settings.errors.motion } else { 0.0 }
-    }
-
-    /// The parent, if the link to it could become longer than its limit and than it is now.
-    fn overstretched_parent(&self, own: Segment) -> Option<NodeId> {
-        let link = self.parent_link()?;
-        let other = self.move_of(link.to);
-        if own.length() == 0.0 && other.length() == 0.0 {
-            return None;
-        }
-        let neighbour = self.neighbour(link.to)?;
-        let walk = self.walk_to(neighbour);
-        let limit = link.limit.max(walk) * (1.0 + ROUNDING);
-        let moved = |segment: Segment| if segment.length() > 0.0 { 1.0 } else { 0.0 };
-        let (one, two) = (moved(own), moved(other));
-        let shorter = self.shortening(link.limit, walk);
-        let longest =
-            [(own.to, other.from, one), (own.from, other.to, two), (own.to, other.to, one + two)]
-                .into_iter()
-                .map(|(a, b, moves)| self.site.free_space.link_reach(a, b) + shorter * moves)
-                .fold(0.0, f64::max);
-        (longest > limit).then_some(link.to)
-    }
-
-    /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
-    /// gives it up. A move that leads back into the region from outside is made in whole or not at all: half
-    /// of it might not gain what errors may lose.
-    pub(super) fn yield_to_objection(&mut self) {
-        if self.proposal.is_some() {
-            self.must_judge_moves = true;
-        }
-        let begins_in_region = self.problem.is_some();
-        self.proposal = match begins_in_region && !self.is_last_chance() {
-            true => self.proposal.map(|segment| segment.halved()),
-            false => None,
+    #[test]
+    fn a_consent_is_sent_once_and_remembered() {
+        let mut negotiation = Negotiation::default();
+        negotiation.begin();
+        negotiation.receive_proposal(5, to(0.08), true);
+        negotiation.receive_proposal(6, to(0.08), false);
+        let mut consents = || {
+            let mut outputs = NodeOutputs::of(0);
+            negotiation.consent(NOW, &mut outputs);
+            outputs.drain_sent().count()
         };
+        assert_eq!([consents(), consents()], [1, 0]);
+        assert!(negotiation.has_nothing_to_judge());
+        let has_consented = |node, period| negotiation.has_consented_since(node, period);
+        assert!(has_consented(5, NOW) && !has_consented(5, NOW + 1) && !has_consented(6, NOW));
+        negotiation.begin();
+        assert!(negotiation.has_consented_since(5, NOW) && negotiation.is_idle());
     }
 }

@@ -80,15 +80,15 @@ impl Robot {
     /// does not take part could be gone before it has answered.
     pub(super) fn consider_exchange(&mut self) {
         self.partner = None;
-        if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {
+        if self.is_engaged() || self.body.still_periods() < PATIENCE || !self.may_hand_over() {
             return;
         }
         let Some(goal) = self.goal() else { return };
-        let (contact, gain) = match self.still_periods < WEDGED_AFTER {
+        let (contact, gain) = match self.body.still_periods() < WEDGED_AFTER {
             true => (CONTACT, GAIN),
             false => (WEDGE, -CONCESSION),
         };
-        let farthest = self.site.distance(self.position, goal) - gain * self.clearance();
+        let farthest = self.site.distance(self.body.position(), goal) - gain * self.clearance();
         let (_, refused) = self.past_offers();
         let candidates = self.neighbours.iter().filter_map(|neighbour| {
             let id = neighbour.id();
@@ -173,7 +173,7 @@ impl Robot {
     fn could_replace(&self, parked: &Neighbour) -> bool {
         let Some(station) = parked.station() else { return false };
         let settings = &self.site.settings;
-        let distance_to = |place: Point| (self.position - place).norm();
+        let distance_to = |place: Point| (self.body.position() - place).norm();
         let within_reach = match station.post.kind {
             PostKind::Primary { .. } | PostKind::Redundant => true,
             PostKind::Fixed => distance_to(station.reference) <= settings.arrival_radius(),
@@ -182,7 +182,7 @@ impl Robot {
             self.task_position(task)
                 .is_some_and(|place| distance_to(place) <= settings.arrival_radius())
         });
-        let keeps_link_to = |node: &Neighbour| self.link_would_hold(self.position, node);
+        let keeps_link_to = |node: &Neighbour| self.link_would_hold(self.body.position(), node);
         // Where the other stands for the parent itself, it does so beside this one then.
         let parent = station.post.parent.and_then(|anchor| self.neighbour_at(anchor));
         let reaches_parent =
@@ -215,7 +215,7 @@ impl Robot {
     /// heard in an earlier control period.
     fn could_take_links_of(&self, mover: &Neighbour) -> bool {
         let is_attached = |node: &&Neighbour| node.beacon.parent == Some(mover.id());
-        let keeps_link_to = |node: &Neighbour| self.link_would_hold(self.position, node);
+        let keeps_link_to = |node: &Neighbour| self.link_would_hold(self.body.position(), node);
         let parent = mover.beacon.parent.filter(|&parent| parent != self.id);
         parent.is_none_or(|parent| self.neighbour(parent).is_some_and(keeps_link_to))
             && self.neighbours.iter().filter(is_attached).all(keeps_link_to)

@@ -3,6 +3,7 @@
 use pleach_discrete::network::NodeId;
 
 use super::context::Context;
+use super::negotiation::Negotiation;
 use super::neighbours::Neighbours;
 
 /// What a robot knows of the places of others in one step.
@@ -10,8 +11,7 @@ use super::neighbours::Neighbours;
 pub(super) struct Places<'a> {
     pub context: Context<'a>,
     pub neighbours: &'a Neighbours,
-    /// The robots to whose moves it has consented, each with the control period in which it did last.
-    pub consented: &'a [(NodeId, u32)],
+    pub negotiation: &'a Negotiation,
     /// Whether all neighbours have been received in this control period, and no node has begun the next one.
     pub has_heard_all: bool,
 }
@@ -31,9 +31,7 @@ impl Places<'_> {
             debug_assert_eq!(heard_in, period, "robot {id} has not received all");
             return true;
         }
-        let has_consented =
-            |&(mover, consented_in): &(NodeId, u32)| mover == node && consented_in >= heard_in;
-        heard_in == period || sends_to && !self.consented.iter().any(has_consented)
+        heard_in == period || sends_to && !self.negotiation.has_consented_since(node, heard_in)
     }
 
     /// The last control period in which this node has been received; 0 if it has not.
@@ -48,7 +46,7 @@ macro_rules! places {
         $crate::network::robot::places::Places {
             context: $crate::network::robot::context!($robot),
             neighbours: &$robot.neighbours,
-            consented: &$robot.consented,
+            negotiation: &$robot.negotiation,
             has_heard_all: $robot.heard_all_in == Some($robot.period) && !$robot.is_behind,
         }
     };

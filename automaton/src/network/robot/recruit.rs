@@ -242,7 +242,7 @@ impl Robot {
 
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
         let station = self.duty.station()?;
-        let place = PathPlace { reference: station.reference, position: self.position };
+        let place = PathPlace { reference: station.reference, position: self.body.position() };
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 

@@ -142,7 +142,9 @@ impl Robot {
             }
             Stage::Sweeps => (self.routing.routes_stand(context!(self)), Rounds::LAST_OF_SWEEPS),
             Stage::Reserving => (!self.reservation.has_news(), self.next_of_reservation()),
-            Stage::Negotiation => (self.has_no_moves_to_judge(), Rounds::LAST_OF_NEGOTIATION),
+            Stage::Negotiation => {
+                (self.negotiation.has_nothing_to_judge(), Rounds::LAST_OF_NEGOTIATION)
+            }
             _ => return 0,
         };
         if has_nothing_to_do { last.saturating_sub(self.round_count.count() + 1) } else { 0 }

@@ -8,8 +8,6 @@
 //! messages, which are processed again on a copy. Explorers verify it in every state of a robot, but for shares and for
 //! periods that are like the one before: to them every period is new.
 
-use pleach_continuous::Vector;
-
 use super::Robot;
 use super::context::context;
 use crate::located::Place as _;
@@ -44,7 +42,7 @@ impl Robot {
             && !self.is_late
             && !self.awaits_confirmation
             && self.waypoint.is_none()
-            && self.velocity == Vector::zeros()
+            && !self.body.is_moving()
             && self.orphaned_periods == 0
             && self.roll.absent.is_empty()
             && self.wrecks.is_empty()

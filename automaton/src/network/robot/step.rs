@@ -4,8 +4,6 @@
 //! a tick it processes what it has received since the last one, and sends. Then it waits for the
 //! messages of the others, up to the next tick. When it has set off, its next tick is at the next sample.
 
-use std::collections::VecDeque;
-
 use pleach_continuous::Point;
 use std::sync::Arc;
 
@@ -112,7 +110,7 @@ impl Node for Robot {
     }
 
     fn body(&self) -> Point {
-        self.position
+        self.body.position()
     }
 }
 
@@ -138,9 +136,7 @@ impl Robot {
 
     /// The robot stands at `position`, and has not got on for `still_periods` control periods.
     pub(super) fn stand_at(&mut self, position: Point, still_periods: u32) {
-        (self.position, self.arrival) = (position, position);
-        self.resting_places = VecDeque::from([position]);
-        self.still_periods = still_periods;
+        self.body.stand_at(position, still_periods);
         self.note_change();
     }
 
@@ -157,32 +153,17 @@ impl Robot {
         self.control.location()
     }
 
-    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; after Δt the robot is where
-    /// its certified move ends, to the last bit.
+    /// Between jumps, by eq. (23).
     pub(super) fn advance(&mut self, duration: f64) {
-        self.clock += duration;
-        self.position = match self.time_to_arrival() > 0.0 {
-            true => self.position + self.velocity * duration,
-            false => self.arrival,
-        };
-    }
-
-    /// τ.
-    pub(super) const fn time_since_sample(&self) -> f64 {
-        self.clock
+        self.body.advance(duration, self.site.settings.period);
     }
 
     /// Time until the next sample is due.
     fn time_to_sample(&self) -> f64 {
         match self.is_behind {
             true => 0.0,
-            false => self.time_to_arrival(),
+            false => self.body.time_to_arrival(self.site.settings.period),
         }
-    }
-
-    /// Time until the move is over.
-    fn time_to_arrival(&self) -> f64 {
-        (self.site.settings.period - self.clock).max(0.0)
     }
 
     /// Most messages are beacons without news.
@@ -239,7 +220,7 @@ impl Robot {
                 self.hear_proposal(from, *segment, *witness);
             }
             Message::Objection { .. } => self.yield_to_objection(),
-            Message::Consent { .. } => self.hear_consent(from),
+            Message::Consent { .. } => self.negotiation.receive_consent(from),
             _ => {}
         }
     }
@@ -265,6 +246,7 @@ mod tests {
     use super::*;
     use pleach_continuous::Vector;
     use pleach_continuous::geometry::HalfPlane;
+    use pleach_continuous::network::acceptance::Segment;
     use pleach_continuous::network::motion::MotionProblem;
     use serde_json::json;
 
@@ -285,13 +267,16 @@ mod tests {
         let position = Point::new(2.0, 2.0);
         let mut robot = Robot::new(0, position, 0.1, site);
         let east = Vector::new(1.0, 0.0);
-        robot.problem = Some(MotionProblem {
+        let problem = MotionProblem {
             position,
             waypoint: position,
             half_planes: vec![HalfPlane::new(east, 2.05)],
             discs: Vec::new(),
-        });
-        (robot.clock, robot.velocity, robot.arrival) = (0.0, 0.2 * east, position + 0.2 * east);
+        };
+        let moves = Segment { from: position, to: position + 0.2 * east };
+        robot.negotiation.propose(moves, problem);
+        robot.body.restart_clock();
+        robot.body.set_off(moves, 0.0, 1.0);
         Node::flow(&mut robot, 0.2);
         assert!(Node::check_invariant(&robot).is_ok());
         Node::flow(&mut robot, 0.2);

@@ -62,10 +62,11 @@ impl Robot {
     fn place_ahead(&self) -> Option<Point> {
         let hop = self.next_hop()?;
         let reference = hop.place.reference;
-        let is_near =
-            |place: Point| (self.position - place).norm() <= self.site.settings.arrival_radius();
+        let is_near = |place: Point| {
+            (self.body.position() - place).norm() <= self.site.settings.arrival_radius()
+        };
         match self.task_at(&hop.post).filter(|&task| is_near(reference) && !is_near(task)) {
-            Some(task) => Some(self.site.place_to_service(task, self.position)),
+            Some(task) => Some(self.site.place_to_service(task, self.body.position())),
             None => Some(reference),
         }
     }

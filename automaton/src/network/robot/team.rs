@@ -231,7 +231,7 @@ impl Robot {
         }
         let own_slack = (self.is_slack() || self.is_near_enough()).then_some(self.id);
         let own_saturated = (self.is_saturated() && !self.is_at_limit()).then_some(self.id);
-        let still = self.still_periods;
+        let still = self.body.still_periods();
         let near_other_tree = self.is_eager() && self.is_near_other_tree();
         self.team = match self.duty.post().map(|post| post.kind) {
             Some(PostKind::Primary { follows: Some(ahead) }) => {
@@ -276,19 +276,21 @@ impl Robot {
 
     /// The distance to the task announced.
     pub(super) fn distance_to_task(&self) -> Option<f64> {
-        self.announcement().map(|announcement| (announcement.position - self.position).norm())
+        self.announcement()
+            .map(|announcement| (announcement.position - self.body.position()).norm())
     }
 
     /// Geodesic distance to the place from which the announced task is serviced.
     pub(super) fn remaining(&self) -> f64 {
-        self.target.map_or(0.0, |target| self.site.distance(self.position, target))
+        self.target.map_or(0.0, |target| self.site.distance(self.body.position(), target))
     }
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.
     fn is_slack(&self) -> bool {
         let bunched = || {
-            self.team_goal()
-                .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
+            self.team_goal().is_none_or(|goal| {
+                (goal - self.body.position()).norm() <= BUNCHED * self.clearance()
+            })
         };
         !self.is_at_limit() && !self.is_saturated() && (self.leads() || !bunched())
     }
@@ -304,9 +306,9 @@ impl Robot {
     fn length_ahead(&self, node: &Neighbour) -> f64 {
         let now = self.walk_to(node);
         let ahead = self.waypoint.map(|waypoint| {
-            let way = waypoint - self.position;
+            let way = waypoint - self.body.position();
             let step = self.site.settings.step_radius.min(way.norm());
-            let place = self.position + way.try_normalize(0.0).unwrap_or_default() * step;
+            let place = self.body.position() + way.try_normalize(0.0).unwrap_or_default() * step;
             self.site.walk(place, node.position())
         });
         ahead.map_or(now, |ahead| now.max(ahead))
@@ -328,8 +330,8 @@ impl Robot {
         let are_near = |one: Point, other: Point| (one - other).norm() <= within;
         station.post.task.is_none_or(|serviced| serviced == task.task)
             && are_near(station.reference, task.position)
-            && are_near(self.position, task.position)
-            && are_near(self.position, station.reference)
+            && are_near(self.body.position(), task.position)
+            && are_near(self.body.position(), station.reference)
     }
 
     /// Whether the links of the robot carry no more, so that it stops where h_i ≤ 1 would break: a recruit makes them

@@ -36,7 +36,7 @@ impl<'a> RobotView<'a> {
 
     /// x_i.
     pub const fn position(self) -> Point {
-        self.0.position
+        self.0.body.position()
     }
 
     /// The role that its duty gives it.

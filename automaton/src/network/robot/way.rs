@@ -36,7 +36,7 @@ impl Robot {
             self.destination = Some(free_space.destination(goal));
             self.goes_by_link = false;
         }
-        let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
+        let direct = free_space.geodesic_to(self.body.position(), self.destination.as_ref()?)?;
         let keep_out = KEEP_OUT * self.clearance();
         let wrecks = self.keep_out_discs(keep_out);
         let bodies = self.discs_of_bodies(KEEP_OUT_OF_BODIES * self.clearance());
@@ -48,7 +48,7 @@ impl Robot {
             .map(|n| Disc { center: n.position(), radius: keep_out })
             .chain(fixed.iter().copied())
             .collect();
-        let path = self.way_around(self.position, direct, &fixed, &parked);
+        let path = self.way_around(self.body.position(), direct, &fixed, &parked);
         let way = self.way_of_link(&path, &parked);
         self.goes_by_link = way.is_some();
         if let Some(way) = way {
@@ -58,7 +58,7 @@ impl Robot {
         match self.waypoint.filter(|&kept| kept != corner && self.may_keep(kept)) {
             Some(kept) => {
                 let onward = free_space.geodesic_to(kept, self.destination.as_ref()?)?;
-                let length = (kept - self.position).norm()
+                let length = (kept - self.body.position()).norm()
                     + self.way_around(kept, onward, &fixed, &parked).length;
                 let margin = HYSTERESIS * self.clearance();
                 Some(if length <= path.length + margin { kept } else { corner })
@@ -110,7 +110,7 @@ impl Robot {
         if path.waypoints.iter().all(|&at| self.site.walk(at, parent) <= link.limit) {
             return None;
         }
-        let back = space.geodesic(self.position, parent)?;
+        let back = space.geodesic(self.body.position(), parent)?;
         // What is left of a way that the link does not cover.
         let left = |length: f64| (length - link.limit).max(0.0);
         if left(back.length + path.length) == 0.0 {
@@ -124,19 +124,19 @@ impl Robot {
         if left(back.length + path.length) <= least {
             return None;
         }
-        let corners = back.waypoints.iter().rev().skip(1).copied().chain([self.position]);
+        let corners = back.waypoints.iter().rev().skip(1).copied().chain([self.body.position()]);
         let around: Vec<Point> = corners.chain(path.waypoints.iter().copied()).collect();
         let by_path = left(space.taut(parent, &around).length);
         if by_path <= least {
             return None;
         }
-        let way = space.taut(self.position, &[back.waypoints, onward.waypoints].concat());
+        let way = space.taut(self.body.position(), &[back.waypoints, onward.waypoints].concat());
         if self.is_held_by_link_ahead(path, &way) {
             return None;
         }
         let is_obstructed =
             |piece: Segment| parked.iter().any(|disc| piece.distance(disc.center) < disc.radius);
-        let allowance = match way.segments(self.position).any(is_obstructed) {
+        let allowance = match way.segments(self.body.position()).any(is_obstructed) {
             true if !is_kept => DETOUR_ALLOWANCE,
             _ => hysteresis,
         };
@@ -146,24 +146,25 @@ impl Robot {
     /// Another way to the goal than `path`, where that is out of reach of these access points: by way of that to which
     /// the robot is attached and the next, pulled taut. On the way between those it always reaches one of them.
     fn way_over(&self, crossing: &[usize], path: &Geodesic) -> Option<Geodesic> {
-        if !self.keeps_way_of_link() && self.keeps_link_along(crossing, self.position, path) {
+        if !self.keeps_way_of_link() && self.keeps_link_along(crossing, self.body.position(), path)
+        {
             return None;
         }
         let (site, space) = (&self.site, &self.site.free_space);
         let passed = crossing.iter().skip(self.index_in_crossing(crossing)).take(2);
         let goal = self.destination.as_ref()?.goal();
-        let mut from = self.position;
+        let mut from = self.body.position();
         let mut corners = Vec::new();
         for to in passed.map(|&access| site.access_points[access]).chain([goal]) {
             corners.extend(space.geodesic(from, to)?.waypoints);
             from = to;
         }
-        Some(space.taut(self.position, &corners))
+        Some(space.taut(self.body.position(), &corners))
     }
 
     /// Whether it follows a way that its link requires, and is making progress.
     fn keeps_way_of_link(&self) -> bool {
-        self.goes_by_link && self.still_periods < PATIENCE_WITH_WAYS
+        self.goes_by_link && self.body.still_periods() < PATIENCE_WITH_WAYS
     }
 
     /// Whether its link to the robot that it follows, which `path` leads to, would exceed its limit on `way`. It is
@@ -185,9 +186,9 @@ impl Robot {
     /// Whether the waypoint of the period before can still be used. One that it has almost
     /// reached would stop it: solvers end slightly short of a waypoint.
     fn may_keep(&self, waypoint: Point) -> bool {
-        self.still_periods < PATIENCE_WITH_WAYS
-            && (waypoint - self.position).norm() > NEARBY * self.clearance()
-            && self.site.free_space.sees(self.position, waypoint)
+        self.body.still_periods() < PATIENCE_WITH_WAYS
+            && (waypoint - self.body.position()).norm() > NEARBY * self.clearance()
+            && self.site.free_space.sees(self.body.position(), waypoint)
     }
 
     /// The first waypoint that the robot has not reached. One that has strayed goes where the path leads
@@ -196,6 +197,6 @@ impl Robot {
         let reached = ROUNDING * self.site.workspace.extent();
         let is_entry = self.has_strayed() && path.waypoints.len() > 1;
         let ahead = path.waypoints.iter().copied().skip(usize::from(is_entry));
-        ahead.into_iter().find(|w| (w - self.position).norm() > reached)
+        ahead.into_iter().find(|w| (w - self.body.position()).norm() > reached)
     }
 }

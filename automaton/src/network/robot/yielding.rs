@@ -32,7 +32,7 @@ impl Robot {
     /// cannot asks in turn.
     pub(super) fn way_asked_for(&self) -> Option<Point> {
         let is_on_its_way = !self.is_parked() || self.way_to_clear().is_some();
-        self.waypoint.filter(|_| is_on_its_way && self.still_periods >= ASKING)
+        self.waypoint.filter(|_| is_on_its_way && self.body.still_periods() >= ASKING)
     }
 
     /// Whether a mover is so near that this robot should not settle now. One that is stuck may be
@@ -50,23 +50,23 @@ impl Robot {
     pub(super) fn place_aside(&self) -> Option<Point> {
         let asking = self.way_to_clear()?;
         let held = self.duty.station().filter(|station| !station.post.is_primary());
-        let centre = held.map_or(self.position, |station| station.reference);
-        let leash = self.site.settings.leash_radius().max((self.position - centre).norm());
+        let centre = held.map_or(self.body.position(), |station| station.reference);
+        let leash = self.site.settings.leash_radius().max((self.body.position() - centre).norm());
         let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
         // It does not pass the mover: there may be no room for both.
-        let is_away = |step: Vector| step.dot(&(asking.from - self.position)) <= 0.0;
+        let is_away = |step: Vector| step.dot(&(asking.from - self.body.position())) <= 0.0;
         let leads_away_on_the_leash = |place: Point| {
-            let way = self.site.free_space.geodesic(self.position, place)?;
-            let first = self.next_corner(&way)? - self.position;
+            let way = self.site.free_space.geodesic(self.body.position(), place)?;
+            let first = self.next_corner(&way)? - self.body.position();
             let on_leash = |corner: &Point| (corner - centre).norm() <= leash;
             Some(is_away(first) && way.waypoints.iter().all(on_leash))
         };
-        let mut best = (room(self.position) + WORTH_A_STEP * self.clearance(), None);
+        let mut best = (room(self.body.position()) + WORTH_A_STEP * self.clearance(), None);
         for pace in 1..=PACES {
             for direction in 0..DIRECTIONS {
                 let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
                 let step = Vector::new(angle.cos(), angle.sin()) * PACE * f64::from(pace);
-                let place = self.position + step * self.clearance();
+                let place = self.body.position() + step * self.clearance();
                 if room(place) > best.0
                     && self.site.free_space.contains(place)
                     && leads_away_on_the_leash(place).unwrap_or(false)
@@ -82,7 +82,7 @@ impl Robot {
     pub(super) fn way_to_clear(&self) -> Option<Segment> {
         self.neighbours.iter().find_map(|mover| {
             let way = self.way_of(mover)?;
-            let is_in_the_way = way.distance(self.position) < PASSING * self.clearance();
+            let is_in_the_way = way.distance(self.body.position()) < PASSING * self.clearance();
             (is_in_the_way && self.makes_way_for(mover, &way)).then_some(way)
         })
     }
@@ -90,7 +90,7 @@ impl Robot {
     /// Whether the mover may ask this robot for way: of the primary team, one that goes on past it asks those that
     /// follow.
     fn makes_way_for(&self, mover: &Neighbour, way: &Segment) -> bool {
-        let goes_past = way.vector().dot(&(self.position - way.from)) > 0.0;
+        let goes_past = way.vector().dot(&(self.body.position() - way.from)) > 0.0;
         !self.duty.is_primary() || (goes_past && self.is_behind_in_team(mover))
     }
 

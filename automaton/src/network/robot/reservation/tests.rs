@@ -4,8 +4,11 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use pleach_continuous::network::acceptance::Segment;
+
 use super::*;
 use crate::network::robot::hearing::Neighbour;
+use crate::network::robot::negotiation::Negotiation;
 use crate::network::robot::neighbours::Neighbours;
 use crate::network::robot::rounds::Rounds;
 use crate::network::robot::tests::{
@@ -34,7 +37,7 @@ pub(super) struct Alone {
     id: NodeId,
     site: Arc<Site>,
     neighbours: Neighbours,
-    consented: Vec<(NodeId, u32)>,
+    negotiation: Negotiation,
     /// F_ij of the plan, for each receiver with its reliability.
     pub plans: Vec<Plan>,
 }
@@ -55,7 +58,7 @@ impl Alone {
             id: 0,
             site,
             neighbours,
-            consented: Vec::new(),
+            negotiation: Negotiation::default(),
             plans: [NEXT, ROBOTS].into_iter().zip(RELIABILITIES).map(plan).collect(),
         }
     }
@@ -80,11 +83,11 @@ impl Alone {
 
     /// What is sent once the plan stands.
     pub fn asks(&mut self) -> Vec<(Destination, Message)> {
-        let Alone { neighbours, consented, .. } = self.clone();
+        let Alone { neighbours, negotiation, .. } = self.clone();
         let plans = self.plans.clone().into_iter();
         self.step(|reservation, context, outputs| {
-            let (neighbours, consented, has_heard_all) = (&neighbours, &consented, false);
-            let places = Places { context, neighbours, consented, has_heard_all };
+            let (neighbours, negotiation) = (&neighbours, &negotiation);
+            let places = Places { context, neighbours, negotiation, has_heard_all: false };
             reservation.ask_for_flows(context, plans, &places, lease_of(0), outputs);
         })
     }
@@ -194,7 +197,11 @@ fn no_flow_is_raised_while_a_receiver_may_have_moved() {
         let request = requests(alone.plans(&[0.2, 0.2]))[0].1;
         alone.receives_grant(NEXT, FlowGrant { flow: 1.0, ..whole(request, NOW + LEASE) });
         alone.settles();
-        alone.consented.extend(consents.then_some((NEXT, NOW)));
+        if consents {
+            let stays = Segment::still(west(1.0));
+            alone.negotiation.receive_proposal(NEXT, stays, true);
+            alone.negotiation.consent(NOW, &mut NodeOutputs::of(0));
+        }
         alone.period += passed;
         let wanted = requests(alone.plans(&[0.4, 0.4]))[0].1.wanted;
         [wanted, alone.flow_to(ROBOTS)]

@@ -72,10 +72,9 @@ fn links_are_made_up_to_d_build() {
 #[test]
 fn links_are_measured_along_geodesics() {
     let mut robot = robot();
-    robot.position = Point::new(7.5, 6.9);
-    robot.arrival = robot.position;
+    robot.body.is_at(Point::new(7.5, 6.9));
     let behind = Point::new(7.5, 8.1);
-    assert!((behind - robot.position).norm() < robot.build_length());
+    assert!((behind - robot.body.position()).norm() < robot.build_length());
     let heard = [beacon(1, behind, fixed(11, 13), &[11, 13])];
     assert_eq!(choice(&mut robot, heard), None);
 }

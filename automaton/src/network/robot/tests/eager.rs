@@ -145,7 +145,7 @@ fn a_member_that_goes_on_is_parked_once_it_stands_still() {
     let is_parked = |strategy, still: u32| {
         let mut robot = leader(strategy, 3.0);
         robot.seeks_recruit(false, false);
-        robot.still_periods = still;
+        robot.body.waits(still);
         robot.is_parked()
     };
     assert_eq!([0, 3, 4].map(|still| is_parked(Strategy::Eager, still)), [false, false, true]);

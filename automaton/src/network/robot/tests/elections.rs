@@ -39,7 +39,7 @@ fn the_nearer_to_the_task_the_better_the_bid_of_a_leader() {
     }
     // Round the pillar the way is longer than the distance.
     let mut behind = asked(Point::new(8.5, 7.5));
-    behind.position = Point::new(6.5, 7.5);
+    behind.body.is_at(Point::new(6.5, 7.5));
     let bid = leader_bid(&mut behind).expect("it competes");
     assert!(-bid.merit > (2.0 / unit) as i64);
 }

@@ -26,18 +26,18 @@ fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
         let mut robot = unsure();
         change(&mut robot);
         robot.correct_position(east(off));
-        assert_eq!(robot.position, robot.arrival);
-        robot.position != HERE
+        robot.body.position() != HERE
     };
     let within = 2.0 * POSITION_ERROR;
     assert!(!corrects(within, &|_| {}) && corrects(within + LITTLE, &|_| {}));
-    assert!(corrects(0.001, &|robot| robot.velocity = Vector::new(0.1, 0.0)));
+    assert!(corrects(0.001, &|robot| robot.body.is_moving_by(Vector::new(0.1, 0.0))));
     for (still, tries) in [(0, false), (2, false), (3, true), (4, false), (7, true)] {
         let wants = |robot: &mut Robot| {
-            (robot.waypoint, robot.still_periods) = (Some(east(1.0)), still);
+            robot.waypoint = Some(east(1.0));
+            robot.body.waits(still);
         };
         assert_eq!(corrects(0.001, &wants), tries, "{still}");
-        let rests = |robot: &mut Robot| robot.still_periods = still;
+        let rests = |robot: &mut Robot| robot.body.waits(still);
         assert!(!corrects(0.001, &rests), "it wants to go nowhere");
     }
 }
@@ -55,7 +55,7 @@ fn a_position_that_is_measured_again_is_no_news() {
 #[test]
 fn a_robot_has_strayed_where_errors_have_led_it_out_of_the_free_space() {
     let at = |mut robot: Robot, position: Point| {
-        robot.position = position;
+        robot.body.is_at(position);
         (robot.has_strayed(), robot.free_place())
     };
     let kept = CLEARANCE + POSITION_ERROR + MOTION_ERROR;
@@ -74,11 +74,10 @@ fn a_robot_outside_of_its_constraints_returns_towards_its_goal_or_stays() {
         robot.holds(Post { parent: None, ..primary(30, None, 13) });
         robot.advances_to(goal);
         robot.roll.called = NOW;
-        robot.position = Point::new(5.0, CLEARANCE + POSITION_ERROR + MOTION_ERROR - 0.01);
-        robot.arrival = robot.position;
+        robot.body.is_at(Point::new(5.0, CLEARANCE + POSITION_ERROR + MOTION_ERROR - 0.01));
         robot.measures();
         robot.propose().expect("its guards have values");
-        robot.proposal.map(|segment| segment.to - segment.from)
+        robot.negotiation.proposal().map(|segment| segment.to - segment.from)
     };
     let back = moved(Point::new(5.0, 3.0)).expect("the way in is the way to its goal");
     assert!(back.y >= 0.01 - 1e-6, "{back}");
@@ -149,7 +148,7 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     assert!(!shifting(queue - LITTLE, false).has_arrived(), "that one has not arrived");
     let near = |away: f64| {
         let mut robot = shifting(0.5, false);
-        robot.position = east(1.0 - away);
+        robot.body.is_at(east(1.0 - away));
         robot.hears(beacon(4, HERE, fixed(13, 14), &[13, 14]));
         robot.has_arrived()
     };
@@ -168,7 +167,7 @@ fn a_robot_near_its_place_goes_on_to_the_task_that_is_serviced_there() {
         let mut robot = shifting(0.5, false);
         change_path(&mut robot, |path| path.hops[1].post.task = Some(0));
         robot.knows_task(task());
-        robot.position = from;
+        robot.body.is_at(from);
         robot.measures();
         (robot.goal(), robot.has_arrived())
     };
@@ -189,9 +188,9 @@ fn a_robot_has_arrived_where_the_links_of_the_post_hold() {
     let arrived = |parent: Option<f64>, child: f64, away: f64| {
         let mut robot = shifting(0.5, false);
         let place = east(1.0);
-        robot.position = place + Vector::new(away, 0.0);
-        let parent = parent.map(|length| robot.position - Vector::new(length, 0.0));
-        let child = robot.position - Vector::new(0.0, child);
+        robot.body.is_at(place + Vector::new(away, 0.0));
+        let parent = parent.map(|length| robot.body.position() - Vector::new(length, 0.0));
+        let child = robot.body.position() - Vector::new(0.0, child);
         let known = parent.map(|at| beacon(4, at, fixed(13, 14), &[13, 14]));
         known.into_iter().for_each(|beacon| robot.hears(beacon));
         robot.hears(beacon(5, child, fixed(20, 1), &[20, 1, 13, 14]));
@@ -205,9 +204,9 @@ fn a_robot_has_arrived_where_the_links_of_the_post_hold() {
     // The holder of the post tells of a child that the robot does not hear.
     let unheard = |length: f64| {
         let mut robot = shifting(0.5, false);
-        robot.position = east(1.0 + away);
+        robot.body.is_at(east(1.0 + away));
         robot.hears(beacon(4, east(0.0), fixed(13, 14), &[13, 14]));
-        let branch = Branch { robot: 5, place: robot.position - Vector::new(0.0, length) };
+        let branch = Branch { robot: 5, place: robot.body.position() - Vector::new(0.0, length) };
         let branches = Arc::new(vec![branch]);
         robot.hears(Beacon { branches, ..beacon(2, east(1.5), fixed(1, 13), &[1, 13, 14]) });
         robot.has_arrived()
@@ -217,9 +216,9 @@ fn a_robot_has_arrived_where_the_links_of_the_post_hold() {
     let behind = |away: f64| {
         let mut robot = shifting(0.0, false);
         change_path(&mut robot, |path| path.hops[1].post = fixed(1, 2));
-        robot.position = east(1.0 + SERVICE_RADIUS / 2.0);
+        robot.body.is_at(east(1.0 + SERVICE_RADIUS / 2.0));
         let ahead = Duty::Shifting(Shifting { place: 1, left: None });
-        let at = robot.position + Vector::new(away, 0.0);
+        let at = robot.body.position() + Vector::new(away, 0.0);
         robot.hears(Beacon { duty: Some(ahead), ..Beacon::silent(1, at) });
         robot.has_arrived()
     };
@@ -240,7 +239,8 @@ fn a_recruit_goes_by_way_of_the_access_points_that_its_path_passes() {
             path.hops[0].place = PathPlace { reference: from, position: from };
             path.hops[1].place = PathPlace { reference: ahead, position: ahead };
         });
-        (robot.position, robot.parent) = (from, Some(parent));
+        robot.body.is_at(from);
+        robot.parent = Some(parent);
         robot.measures();
         (robot.goal(), robot.named_parent())
     };
@@ -266,7 +266,7 @@ fn a_recruit_goes_by_way_of_the_access_points_that_its_path_passes() {
 fn a_post_is_held_at_its_place_by_a_robot_that_has_come_there() {
     let reference = |away: f64| {
         let mut robot = shifting(0.5, true);
-        robot.position = east(1.0 - away);
+        robot.body.is_at(east(1.0 - away));
         robot.measures();
         let jump = robot.jump_duty(Label::Mission(MissionStep::SubgroupArrived));
         assert!(jump.expect("its guards have values").is_some());
@@ -315,7 +315,7 @@ fn a_robot_under_way_is_attached_to_the_next_of_the_chain() {
     assert!(robot.has_reported(1) && !robot.has_reported(0) && !robot.has_reported(2));
     robot.report_arrival();
     assert!(!robot.has_reported(0), "it is far from its place");
-    robot.position = east(1.0);
+    robot.body.is_at(east(1.0));
     robot.report_arrival();
     assert!(robot.has_reported(0));
 }
@@ -327,7 +327,7 @@ fn a_robot_that_has_settled_arrives_unless_a_link_is_too_long() {
     let settled = robot().settled_length();
     let arrives = |length: f64, other: Post| {
         let mut robot = shifting(0.5, true);
-        robot.position = east(1.0);
+        robot.body.is_at(east(1.0));
         robot.hears(beacon(4, east(1.0 + length), other, &[other.id.0, 15]));
         robot.has_arrived()
     };
@@ -365,14 +365,14 @@ fn a_link_that_is_far_too_long_truly_gets_no_longer() {
         robot.holds(fixed(20, 13));
         robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
         robot.parent = Some(5);
-        robot.begin_negotiation();
+        robot.negotiation.begin();
         if other > 0.0 {
             robot.hear_proposal(5, Segment { from: west(length), to: west(length - other) }, None);
         }
         let proposal = (own > 0.0).then(|| Segment { from: HERE, to: west(own) });
-        robot.proposal = proposal;
+        robot.negotiation.intends(proposal);
         robot.judge_moves(&mut crate::node::Outputs::of(0));
-        robot.proposal == proposal && !robot.must_judge_moves
+        robot.negotiation.proposal() == proposal && !robot.negotiation.must_judge()
     };
     let (near, long) = (far - LITTLE, far + LITTLE);
     let (enough, short) = (MOTION_ERROR + LITTLE, MOTION_ERROR - LITTLE);
@@ -392,7 +392,7 @@ fn a_link_is_at_its_limit_in_spite_of_rounding() {
         robot.hears(beacon(5, east(length), fixed(13, 14), &[13, 14]));
         robot.remember_parent();
         let problem = robot.motion_problem(east(length));
-        problem.admits(&robot.position)
+        problem.admits(&robot.body.position())
     };
     assert!(goes_on(0.0) && goes_on(1e-15) && !goes_on(1e-6));
 }
@@ -409,7 +409,7 @@ fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
         robot.survey_links();
         robot.routing.plans(&[share]);
         robot.sends(5, share * robot.routing.links()[0].reliability);
-        robot.begin_negotiation();
+        robot.negotiation.begin();
         robot.hear_proposal(5, Segment { from: west(1.2), to: west(move_to) }, None);
         let mut outputs = crate::node::Outputs::of(0);
         robot.judge_moves(&mut outputs);

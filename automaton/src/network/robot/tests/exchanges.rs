@@ -36,7 +36,8 @@ impl Scene {
         let center = HERE + 0.5 * (other - HERE);
         let robots = (0..).zip(places).map(|(id, place)| {
             let mut robot = Robot::new(id, place, 0.1, Arc::clone(site));
-            (robot.period, robot.is_new, robot.still_periods) = (NOW, false, 12);
+            (robot.period, robot.is_new) = (NOW, false);
+            robot.body.waits(12);
             robot.stretched = stretched;
             robot.holds(post_of(id, link));
             robot.advances_to(east(4.0));
@@ -60,7 +61,7 @@ impl Scene {
         });
         let told: Vec<Beacon> = told.collect();
         for robot in &mut self.robots {
-            let is_heard = |it: &&Beacon| (it.position - robot.position).norm() < RANGE;
+            let is_heard = |it: &&Beacon| (it.position - robot.body.position()).norm() < RANGE;
             let heard = told.iter().filter(|it| it.sender != robot.id).filter(is_heard);
             let heard: Vec<Beacon> = heard.cloned().collect();
             heard.into_iter().for_each(|beacon| robot.hears(beacon));
@@ -87,7 +88,7 @@ impl Scene {
             let [mover, parked] = PAIRS[pair];
             let holder = self.link[pair];
             let swapped = if holder == mover { parked } else { mover };
-            self.robots[if exchanged[pair] { swapped } else { holder }].position
+            self.robots[if exchanged[pair] { swapped } else { holder }].body.position()
         });
         (one - other).norm()
     }

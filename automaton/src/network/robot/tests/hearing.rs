@@ -112,7 +112,7 @@ fn silence_is_news_where_it_changes_what_the_robot_knows() {
         robot.has_news()
     };
     assert!(is_news(&mut robot), "it was heard a round ago");
-    robot.position = west(0.1);
+    robot.body.is_at(west(0.1));
     assert!(is_news(&mut robot), "the link is longer now");
     assert!(is_news(&mut robot), "it is silent now");
     assert!(!is_news(&mut robot), "it has been silent before");
@@ -123,7 +123,7 @@ fn a_robot_that_has_gone_out_of_range_is_forgotten_at_once() {
     let mut robot = robot();
     robot.hears(beacon(1, east(1.5), redundant(11, 12), &[]));
     silent_rounds(&mut robot, 1);
-    robot.position = west(0.6);
+    robot.body.is_at(west(0.6));
     silent_rounds(&mut robot, 1);
     assert!(hears(&robot).is_empty(), "2.1 away, and links reach 2");
 }
@@ -177,17 +177,20 @@ fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
 #[test]
 fn a_control_period_begins_when_the_first_clock_is_due() {
     let mut robot = robot();
-    (robot.clock, robot.velocity) = (0.0, east(0.1) - HERE);
+    robot.body.is_moving_by(east(0.1) - HERE);
     robot.flow(0.25);
-    let place = robot.position;
+    let place = robot.body.position();
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     robot.hear_beacon(NOW, None, &heard);
     assert_eq!(robot.time_to_tick(), Some(0.25));
     robot.hear_beacon(NOW + 1, None, &heard);
     assert_eq!(robot.time_to_tick(), Some(0.0));
     robot.tick(0, &mut Outputs::of(0)).expect("it goes on");
-    assert_eq!((robot.period, robot.stage(), robot.position), (NOW + 1, Stage::Beacons, place));
-    assert!(!robot.is_behind && robot.time_since_sample() == 0.0);
+    assert_eq!(
+        (robot.period, robot.stage(), robot.body.position()),
+        (NOW + 1, Stage::Beacons, place)
+    );
+    assert!(!robot.is_behind && robot.body.clock() == 0.0);
 }
 
 #[test]
@@ -363,7 +366,7 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
     };
     assert!(!deliberates(standing()));
     let changes: [fn(&mut Robot); 3] = [
-        |robot| robot.velocity = Vector::new(0.1, 0.0),
+        |robot| robot.body.is_moving_by(Vector::new(0.1, 0.0)),
         |robot| silent_rounds(robot, 1),
         |robot| {
             let gone = [1].into_iter().collect();

@@ -27,7 +27,7 @@ pub(super) fn attached_mover() -> Robot {
 pub(super) fn proposed(robot: &mut Robot) -> Option<Segment> {
     robot.measures();
     robot.propose().expect("its guards have values");
-    robot.proposal
+    robot.negotiation.proposal()
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn a_robot_nearer_than_two_steps_and_clearances_limits_a_move() {
         let mut robot = mover();
         robot.hears(beacon(1, north(away), primary(31, Some(30), 30), &[]));
         proposed(&mut robot).expect("it moves east");
-        robot.problem.expect("it has moved by its problem").half_planes.len()
+        robot.negotiation.problem().expect("it has moved by its problem").half_planes.len()
     };
     let near = 2.0 * (STEP + kept);
     assert_eq!(cell(near - LITTLE), cell(near + LITTLE) + 1);
@@ -172,32 +172,18 @@ fn what_arrives_after_the_last_round_is_not_heard_in_the_next_period() {
     assert_eq!(robot.heard_all_in, None);
 }
 
+/// Three tenths of its clearance count as standing still.
 #[test]
 fn a_robot_that_gets_nowhere_counts_the_periods() {
-    let mut robot = mover();
     let still = 0.3 * CLEARANCE;
-    let mut goes = |ahead: f64, expected: u32| {
-        robot.proposal = Some(Segment { from: robot.position, to: east(ahead) });
+    for (ahead, expected) in [(still - LITTLE, 1), (still + LITTLE, 0)] {
+        let mut robot = mover();
+        robot.negotiation.intends(Some(Segment { from: HERE, to: east(ahead) }));
         robot.set_off();
-        robot.position = robot.arrival;
-        assert_eq!(robot.still_periods, expected, "{ahead}");
-    };
-    goes(still - LITTLE, 1);
-    goes(still + LITTLE, 0);
-    goes(0.0, 1); // it has been there
-    goes(2.0 * still + 1e-3, 0);
-    goes(3.0 * still + 2e-3, 0);
-    goes(still, 1);
-    goes(-1.5 * still, 0);
-    robot.proposal = None;
-    robot.set_off();
-    assert_eq!((robot.still_periods, robot.velocity), (1, Vector::zeros()));
-    robot.proposal =
-        Some(Segment { from: robot.position, to: robot.position + Vector::new(0.1, 0.0) });
-    robot.set_off();
-    assert!((robot.velocity - Vector::new(0.1, 0.0) / robot.site.settings.period).norm() < 1e-12);
-    robot.stay();
-    assert_eq!((robot.velocity, robot.arrival), (Vector::zeros(), robot.position));
+        assert_eq!((robot.body.still_periods(), robot.body.is_moving()), (expected, true));
+        robot.stay();
+        assert!(!robot.body.is_moving());
+    }
 }
 
 #[test]
@@ -208,17 +194,14 @@ fn a_robot_has_settled_within_a_fiftieth_of_its_clearance() {
 }
 
 #[test]
-fn the_end_of_a_flow_is_where_its_move_ends() {
+fn a_certified_move_takes_a_control_period() {
     let mut robot = mover();
-    robot.proposal = Some(Segment { from: HERE, to: east(0.07) });
+    robot.negotiation.intends(Some(Segment { from: HERE, to: east(0.07) }));
     robot.restart_clock();
     assert_eq!(robot.period, NOW + 1);
     robot.set_off();
-    let period = robot.site.settings.period;
-    robot.advance(period / 2.0);
-    assert!((robot.position - east(0.035)).norm() < 1e-12);
-    robot.advance(period / 2.0);
-    assert_eq!(robot.position, east(0.07));
+    robot.advance(robot.site.settings.period);
+    assert_eq!(robot.body.position(), east(0.07));
 }
 
 fn sent(outputs: &mut Outputs<Message, super::super::MissionEvent>) -> Vec<Message> {
@@ -235,9 +218,9 @@ fn a_robot_moves_with_the_consent_of_all_that_rely_on_it() {
             ..beacon(1, west(0.5), primary(31, Some(30), 30), &[])
         });
         proposed(&mut robot).expect("nothing is in its way");
-        consents.iter().for_each(|&from| robot.hear_consent(from));
+        consents.iter().for_each(|&from| robot.negotiation.receive_consent(from));
         robot.stay_without_consent();
-        robot.proposal.is_some()
+        robot.negotiation.proposal().is_some()
     };
     assert!(!relied_on(&[]) && !relied_on(&[2]) && relied_on(&[1]) && relied_on(&[2, 1, 1]));
 }
@@ -260,13 +243,13 @@ fn a_robot_on_which_nobody_relies_moves_when_a_witness_knows_of_it() {
     proposed(&mut robot).expect("nothing is in its way");
     assert_eq!(witness(&mut robot), Some(5), "its parent");
     robot.stay_without_consent();
-    assert_eq!(robot.proposal, None, "nobody knows of its move");
+    assert_eq!(robot.negotiation.proposal(), None, "nobody knows of its move");
     proposed(&mut robot).expect("nothing is in its way");
-    robot.still_periods = 1;
+    robot.body.waits(1);
     assert_eq!(witness(&mut robot), Some(4), "the parent may not receive it");
-    robot.hear_consent(4);
+    robot.negotiation.receive_consent(4);
     robot.stay_without_consent();
-    assert!(robot.proposal.is_some());
+    assert!(robot.negotiation.proposal().is_some());
     robot.hears(Beacon { parent: Some(0), ..beacon(1, west(0.5), primary(31, Some(30), 30), &[]) });
     proposed(&mut robot).expect("nothing is in its way");
     assert_eq!(witness(&mut robot), None, "robot 1 has to consent in any case");
@@ -279,7 +262,7 @@ fn a_witness_knows_how_far_a_robot_may_have_gone() {
         let mut robot = robot();
         robot.holds(fixed(20, 99));
         robot.hears(beacon(5, west(1.0), redundant(13, 14), &[13, 14]));
-        robot.begin_negotiation();
+        robot.negotiation.begin();
         let to = from + Vector::new(0.0, 0.06);
         robot.hear_proposal(5, Segment { from, to }, Some(witness));
         let mut outputs = Outputs::of(0);
@@ -316,33 +299,6 @@ fn a_move_that_is_over_is_forgotten() {
     assert_eq!(known(&mut robot), Wreck::heard(5, west(0.95), NOW + 1));
 }
 
-#[test]
-fn a_proposal_is_told_until_all_have_consented_and_whenever_it_changes() {
-    let mut robot = mover();
-    robot.hears(Beacon { parent: Some(0), ..beacon(1, west(0.5), primary(31, Some(30), 30), &[]) });
-    proposed(&mut robot).expect("nothing is in its way");
-    let told = |robot: &mut Robot| {
-        let mut outputs = Outputs::of(0);
-        robot.tell_proposal(&mut outputs);
-        sent(&mut outputs).len()
-    };
-    assert_eq!((told(&mut robot), told(&mut robot)), (1, 1));
-    robot.hear_consent(1);
-    assert_eq!(told(&mut robot), 0);
-    robot.yield_to_objection();
-    assert_eq!((told(&mut robot), told(&mut robot)), (1, 0));
-}
-
-#[test]
-fn an_objection_halves_a_move() {
-    let mut robot = mover();
-    let before = proposed(&mut robot).expect("nothing is in its way");
-    robot.must_judge_moves = false;
-    robot.yield_to_objection();
-    let after = robot.proposal.expect("half of it is left");
-    assert!((after.length() - before.length() / 2.0).abs() < 1e-12 && robot.must_judge_moves);
-}
-
 /// Robot 0 is attached to robot 5, 3 cm short of what its link allows.
 #[test]
 fn a_child_objects_to_a_move_of_its_parent_that_overstretches_their_link() {
@@ -352,7 +308,7 @@ fn a_child_objects_to_a_move_of_its_parent_that_overstretches_their_link() {
         let hard = robot.hard_length();
         robot.hears(beacon(5, west(hard - 0.03), fixed(13, 14), &[13, 14]));
         robot.remember_parent();
-        robot.begin_negotiation();
+        robot.negotiation.begin();
         let from = west(hard - 0.03);
         robot.hear_proposal(5, Segment { from, to: from - Vector::new(ahead, 0.0) }, None);
         let mut outputs = Outputs::of(0);
@@ -372,16 +328,16 @@ fn a_robot_halves_its_move_only_if_that_is_part_of_the_cause() {
         let from = west(robot.build_length() - 0.03);
         robot.hears(beacon(5, from, fixed(13, 14), &[13, 14]));
         robot.remember_parent();
-        robot.begin_negotiation();
+        robot.negotiation.begin();
         proposed(&mut robot).expect("it may move");
-        robot.proposal = Some(Segment { from: HERE, to: east(own) });
+        robot.negotiation.intends(Some(Segment { from: HERE, to: east(own) }));
         let to = from - Vector::new(parent, 0.0);
         robot.hear_proposal(5, Segment { from, to }, None);
         let mut outputs = Outputs::of(0);
         robot.judge_moves(&mut outputs);
         assert!(matches!(sent(&mut outputs)[..], [Message::Objection { .. }]));
-        assert!(robot.must_judge_moves, "it does not accept them");
-        robot.proposal.map_or(0.0, |segment| segment.length())
+        assert!(robot.negotiation.must_judge(), "it does not accept them");
+        robot.negotiation.proposal().map_or(0.0, |segment| segment.length())
     };
     let close = |one: f64, other: f64| assert!((one - other).abs() < 1e-12, "{one} is not {other}");
     close(left(-0.05, 0.05), 0.05); // it follows its parent
@@ -400,7 +356,7 @@ fn a_sender_objects_to_a_move_of_its_receiver_that_overloads_it() {
         robot.survey_links();
         robot.routing.plans(&[share]);
         robot.sends(5, share * robot.routing.links()[0].reliability);
-        robot.begin_negotiation();
+        robot.negotiation.begin();
         robot.hear_proposal(5, Segment { from: west(1.2), to: west(1.2 + ahead) }, None);
         let mut outputs = Outputs::of(0);
         robot.judge_moves(&mut outputs);
@@ -436,7 +392,7 @@ fn a_sender_objects_to_no_more_moves_than_it_has_to() {
         for node in [5, 6] {
             robot.sends(node, 0.45 * robot.routing.links()[0].reliability);
         }
-        robot.begin_negotiation();
+        robot.negotiation.begin();
         for (node, away) in [(5, first), (6, second)] {
             robot.hear_proposal(node, Segment { from: west(1.2), to: west(1.2 + away) }, None);
         }
@@ -455,21 +411,6 @@ fn a_sender_objects_to_no_more_moves_than_it_has_to() {
     assert_eq!(told(0.25, 0.26), [5, 6]);
 }
 
-#[test]
-fn moves_that_are_heard_only_shrink() {
-    let mut robot = robot();
-    let to = |ahead: f64| Segment { from: west(1.0), to: west(1.0 - ahead) };
-    robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
-    robot.begin_negotiation();
-    robot.hear_proposal(5, to(0.08), None);
-    robot.must_judge_moves = false;
-    robot.hear_proposal(5, to(0.09), None);
-    assert_eq!((robot.heard_moves[0].1, robot.must_judge_moves), (to(0.08), false));
-    robot.hear_proposal(5, to(0.04), None);
-    assert_eq!((robot.heard_moves[0].1, robot.must_judge_moves), (to(0.04), true));
-    assert_eq!(robot.heard_moves.len(), 1);
-}
-
 /// It has asked node 5 for a flow over its link, and relies on it from then on.
 #[test]
 fn a_sender_relies_on_its_receiver_and_answers_it() {
@@ -482,7 +423,7 @@ fn a_sender_relies_on_its_receiver_and_answers_it() {
     robot.ask_for_flows(&mut outputs);
     let asked = sent(&mut outputs);
     assert!(matches!(asked[..], [Message::AskFlow(_)]), "it asks: {asked:?}");
-    robot.begin_negotiation();
+    robot.negotiation.begin();
     robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) }, None);
     let mut outputs = Outputs::of(0);
     robot.judge_moves(&mut outputs);
@@ -500,13 +441,13 @@ fn a_robot_gives_its_move_up_at_the_last_chance() {
         robot.round_count.restart();
         robot.round_count.pass(rounds);
         robot.yield_to_objection();
-        assert_eq!(robot.proposal.is_some(), moves, "{rounds}");
+        assert_eq!(robot.negotiation.proposal().is_some(), moves, "{rounds}");
     }
     let mut elsewhere = mover();
     proposed(&mut elsewhere).expect("nothing is in its way");
     elsewhere.round_count.pass(16);
     elsewhere.yield_to_objection();
-    assert!(elsewhere.proposal.is_some(), "rounds of another stage do not count");
+    assert!(elsewhere.negotiation.proposal().is_some(), "rounds of another stage do not count");
 }
 
 /// Others allow for two steps from where a robot was heard last, which was not before its roll was called.
@@ -531,16 +472,4 @@ fn a_robot_that_may_not_be_heard_stays_within_two_steps_of_where_it_has_been() {
     proposed(&mut robot).expect("nothing is in its way");
     robot.set_off();
     assert_eq!(robot.trail, [(NOW, HERE)]);
-}
-
-/// Half of a way back into the region might gain less than errors lose.
-#[test]
-fn a_move_that_begins_outside_of_its_region_is_made_in_whole_or_not_at_all() {
-    let mut robot = mover();
-    let whole = proposed(&mut robot).expect("nothing is in its way");
-    robot.yield_to_objection();
-    assert_eq!(robot.proposal, Some(whole.halved()));
-    robot.problem = None;
-    robot.yield_to_objection();
-    assert_eq!(robot.proposal, None);
 }

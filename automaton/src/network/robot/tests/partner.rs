@@ -19,7 +19,7 @@ fn stuck_by(strategy: Strategy, periods: u32) -> Robot {
     let mut robot = robot_of(&scenario);
     robot.holds(primary(30, None, 13));
     robot.advances_to(east(3.0));
-    robot.still_periods = periods;
+    robot.body.waits(periods);
     robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
     robot
 }
@@ -201,7 +201,7 @@ fn links_of_both_hold_when_they_have_exchanged() {
         let mut robot = robot();
         robot.holds(primary(30, None, 13));
         robot.advances_to(east(3.0));
-        robot.still_periods = 5;
+        robot.body.waits(5);
         robot.hears(beacon(5, north(own_parent), fixed(13, 14), &[13, 14]));
         robot.hears(beacon(4, south(parent), fixed(15, 14), &[15, 14]));
         robot.hears(beacon(1, east(BESIDE), redundant(11, 15), &[11, 15, 14]));
@@ -233,7 +233,7 @@ fn no_partner_is_taken_if_a_robot_beside_the_parent_would_be_out_of_reach() {
         let mut robot = robot();
         robot.holds(primary(30, None, 13));
         robot.advances_to(east(3.0));
-        robot.still_periods = 5;
+        robot.body.waits(5);
         let parent = diagonal(hard) - 0.1;
         robot.hears(beacon(5, north(parent), fixed(13, 14), &[13, 14]));
         robot.hears(parked(BESIDE));

@@ -7,11 +7,14 @@ use crate::node::{Input, Node, Observed, Outputs};
 #[test]
 fn a_robot_that_finds_itself_elsewhere_measures_its_links_anew() {
     let mut robot = robot();
-    robot.still_periods = 7;
+    robot.body.waits(7);
     robot.hears(beacon(1, east(0.5), redundant(11, 13), &[]));
     let sensed = Input::Sensed(Sense::Position(west(0.25)));
     robot.step(sensed, &mut Outputs::of(0)).expect("it goes on");
-    assert_eq!((robot.body(), robot.arrival, robot.still_periods), (west(0.25), west(0.25), 0));
+    assert_eq!(
+        (robot.body(), robot.body.is_moving(), robot.body.still_periods()),
+        (west(0.25), false, 0)
+    );
     let distance = robot.neighbour(1).expect("it is heard").distance;
     assert!((distance - 0.75).abs() < 1e-12);
 }
@@ -19,7 +22,7 @@ fn a_robot_that_finds_itself_elsewhere_measures_its_links_anew() {
 #[test]
 fn a_fix_is_taken_as_it_is_measured() {
     let mut robot = robot();
-    robot.velocity = Vector::new(0.1, 0.0);
+    robot.body.is_moving_by(Vector::new(0.1, 0.0));
     robot.step(Input::Sensed(Sense::Fix(east(0.01))), &mut Outputs::of(0)).expect("it goes on");
     assert_eq!(robot.body(), east(0.01));
 }

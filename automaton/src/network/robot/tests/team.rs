@@ -179,7 +179,7 @@ pub(super) fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId
 #[test]
 fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
     let mut robot = leader();
-    robot.still_periods = 4;
+    robot.body.waits(4);
     robot.review_team();
     let own = robot.team.expect("it leads");
     assert_eq!((own.still, own.slack, own.saturated), (4, None, None), "its parent is not heard");
@@ -191,7 +191,7 @@ fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
     let follows = |front: TeamReport, still: u32| {
         let mut robot = leader();
         robot.holds(primary(30, Some(31), 13));
-        robot.still_periods = still;
+        robot.body.waits(still);
         let ahead = beacon(1, east(1.0), primary(31, None, 30), &[31, 30]);
         robot.hears(Beacon { team: Some(front), ..ahead });
         robot.review_team();
@@ -299,7 +299,7 @@ fn a_parent_that_is_not_heard_is_the_one_before() {
 fn the_first_of_the_team_counts_for_how_long_it_stands_still_without_need() {
     let stalled = |length: f64, has_follower: bool| {
         let mut robot = leader();
-        robot.still_periods = 4;
+        robot.body.waits(4);
         robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
         if has_follower {
             robot.hears(beacon(2, west(0.5), primary(32, Some(30), 13), &[32, 13]));
@@ -320,7 +320,7 @@ fn a_team_that_does_not_hear_of_its_leader_does_not_wait_for_ever() {
     robot.holds(primary(30, Some(31), 13));
     robot.hears(beacon(1, east(0.5), primary(31, Some(32), 30), &[31, 30, 13]));
     robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
-    robot.still_periods = robot.patience().ceil() as u32;
+    robot.body.waits(robot.patience().ceil() as u32);
     robot.review_team();
     robot.measures();
     assert_eq!((robot.team, robot.facts.pending), (None, false));

@@ -79,7 +79,8 @@ fn a_waypoint_that_is_about_as_good_is_kept() {
     let keeps = |aside: f64, still: u32| {
         let mut robot = mover(&[]);
         let kept = east(1.0) + Vector::new(0.0, aside);
-        (robot.waypoint, robot.still_periods) = (Some(kept), still);
+        robot.waypoint = Some(kept);
+        robot.body.waits(still);
         waypoint(&mut robot) == kept
     };
     // 2 √(1 + a²) = 2 + ρ
@@ -94,7 +95,7 @@ fn a_waypoint_that_is_about_as_good_is_kept() {
     };
     assert!(near(0.1 * CLEARANCE + LITTLE) && !near(0.1 * CLEARANCE - LITTLE));
     let mut hidden = mover(&[]);
-    hidden.position = Point::new(6.5, 7.5);
+    hidden.body.is_at(Point::new(6.5, 7.5));
     let behind = Point::new(8.5, 7.5);
     hidden.waypoint = Some(behind);
     let goal = Point::new(8.5, 7.4);
@@ -107,7 +108,7 @@ fn a_waypoint_that_is_about_as_good_is_kept() {
 fn a_robot_whose_link_leads_farther_on_the_other_side_goes_there() {
     let goes_north = |parent: Point, parked: bool| {
         let mut robot = robot();
-        robot.position = Point::new(6.9, 7.45);
+        robot.body.is_at(Point::new(6.9, 7.45));
         robot.holds(fixed(20, 13));
         robot.hears(Beacon { parked, ..beacon(1, parent, fixed(13, 14), &[13, 14]) });
         robot.remember_parent();
@@ -139,10 +140,11 @@ fn a_robot_that_follows_another_goes_only_where_their_link_lasts() {
 #[test]
 fn a_corner_that_is_reached_is_passed() {
     let mut robot = robot();
-    robot.position = Point::new(6.95, 6.95);
-    let path = robot.site.free_space.geodesic(robot.position, Point::new(8.05, 7.5)).expect("free");
+    robot.body.is_at(Point::new(6.95, 6.95));
+    let path =
+        robot.site.free_space.geodesic(robot.body.position(), Point::new(8.05, 7.5)).expect("free");
     let corner = robot.next_corner(&path).expect("it leads round the pillar");
-    robot.position = corner;
+    robot.body.is_at(corner);
     let path = robot.site.free_space.geodesic(corner, Point::new(8.05, 7.5)).expect("free");
     let next = robot.next_corner(&path).expect("it leads on");
     assert!((next - corner).norm() > LITTLE, "{next} after {corner}");

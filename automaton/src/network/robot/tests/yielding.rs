@@ -22,13 +22,14 @@ fn a_mover_asks_for_way_when_it_has_been_stuck_for_long() {
     mover.advances_to(east(3.0));
     mover.waypoint = Some(east(3.0));
     for (periods, asks) in [(0, false), (15, false), (16, true), (17, true)] {
-        mover.still_periods = periods;
+        mover.body.waits(periods);
         assert_eq!(mover.way_asked_for().is_some(), asks, "{periods}");
     }
     mover.waypoint = None;
     assert_eq!(mover.way_asked_for(), None, "it wants to go nowhere");
     let mut parked = posted();
-    (parked.waypoint, parked.still_periods) = (Some(east(0.1)), 20);
+    parked.waypoint = Some(east(0.1));
+    parked.body.waits(20);
     assert_eq!(parked.way_asked_for(), None, "it stands where it should");
     parked.hears(asking(0.1));
     assert_eq!(parked.way_asked_for(), Some(east(0.1)), "it steps aside and cannot");
@@ -93,16 +94,15 @@ fn it_steps_aside_as_far_as_it_takes_and_no_farther_than_its_leash() {
     assert!((place - HERE).norm() <= robot.site.settings.leash_radius());
     // Where the leash ends two clearances to the north and south it goes as far as that.
     let mut short = posted();
-    short.position = north(SERVICE_RADIUS - 2.0 * CLEARANCE);
-    short.arrival = short.position;
+    short.body.is_at(north(SERVICE_RADIUS - 2.0 * CLEARANCE));
     short.hears(Beacon {
-        way: Some(short.position + Vector::new(3.0, 0.0)),
-        position: short.position - Vector::new(0.1, 0.0),
+        way: Some(short.body.position() + Vector::new(3.0, 0.0)),
+        position: short.body.position() - Vector::new(0.1, 0.0),
         ..asking(0.1)
     });
     let place = short.place_aside().expect("it may go south");
     assert!((place - HERE).norm() <= SERVICE_RADIUS + LITTLE, "{place}");
-    assert!(place.y < short.position.y, "{place}");
+    assert!(place.y < short.body.position().y, "{place}");
 }
 
 /// Between two walls that end north of it, where a mover comes from the south: the places behind the walls are within
@@ -119,8 +119,7 @@ fn the_whole_way_aside_is_on_the_leash() {
         scenario.workspace.holes = vec![wall(-1.3, -1.2), wall(1.2, 1.3)];
         let mut robot = robot_of(&scenario);
         robot.holds(fixed(20, 13));
-        robot.position = north(north_of_post);
-        robot.arrival = robot.position;
+        robot.body.is_at(north(north_of_post));
         let [position, way] = [-2.1, 4.0].map(|ahead| north(north_of_post + ahead * CLEARANCE));
         robot.hears(Beacon { position, way: Some(way), ..asking(0.1) });
         robot.place_aside()
@@ -136,11 +135,11 @@ fn the_whole_way_aside_is_on_the_leash() {
 fn it_does_not_pass_the_mover() {
     let steps_aside = |from_north: f64| {
         let mut robot = posted();
-        robot.position = Point::new(CLEARANCE + 1e-3, 5.0);
+        robot.body.is_at(Point::new(CLEARANCE + 1e-3, 5.0));
         robot.holds(fixed(20, 13));
-        robot.position.y -= SERVICE_RADIUS - 0.1 * CLEARANCE;
-        robot.arrival = robot.position;
-        let mover = robot.position + Vector::new(2.0, from_north) * CLEARANCE;
+        let south = Vector::new(0.0, 0.1 * CLEARANCE - SERVICE_RADIUS);
+        robot.body.is_at(robot.body.position() + south);
+        let mover = robot.body.position() + Vector::new(2.0, from_north) * CLEARANCE;
         let way = Some(mover - Vector::new(0.0, from_north.signum()) * CLEARANCE);
         robot.hears(Beacon { position: mover, way, ..asking(0.1) });
         robot.place_aside().is_some()
@@ -151,10 +150,9 @@ fn it_does_not_pass_the_mover() {
 #[test]
 fn a_robot_at_a_wall_steps_to_the_free_side() {
     let mut robot = posted();
-    robot.position = Point::new(5.0, 0.05);
-    robot.arrival = robot.position;
+    robot.body.is_at(Point::new(5.0, 0.05));
     robot.holds(fixed(20, 13));
-    let at = robot.position;
+    let at = robot.body.position();
     robot.hears(Beacon {
         position: at - Vector::new(0.1, 0.0),
         way: Some(at + Vector::new(3.0, 0.0)),
@@ -196,7 +194,8 @@ fn who_gives_up_stepping_aside_asks_for_no_way() {
     robot.holds(redundant(20, 13));
     robot.hears(beacon(2, Point::new(5.0, 4.4), fixed(13, 12), &[13, 12]));
     robot.hears(asking(0.1));
-    (robot.waypoint, robot.still_periods) = (Some(east(0.1)), 20);
+    robot.waypoint = Some(east(0.1));
+    robot.body.waits(20);
     // The way of the mover now leads by at such a distance that no place beside is better.
     let shift = Vector::new(0.0, 2.15 * CLEARANCE);
     let way = Some(east(3.0) + shift);
