@@ -76,7 +76,7 @@ impl Robot {
 
     /// Whether it takes part by a roll that is valid.
     pub(super) fn is_called(&self) -> bool {
-        self.roll.lets_move(self.id, self.period, self.site.roll_validity())
+        self.roll.lets_move(self.id, self.schedule.period(), self.site.roll_validity())
     }
 
     /// Whether a robot is called gone.
@@ -103,7 +103,7 @@ impl Robot {
     /// Whether a robot that was heard here last may be on its way, and so near by now that the two could come
     /// into contact in this control period.
     pub(super) fn may_meet(&self, lost: &Wreck) -> bool {
-        let periods = self.period.saturating_sub(lost.heard_in);
+        let periods = self.schedule.period().saturating_sub(lost.heard_in);
         self.site.could_meet((lost.place - self.body.position()).norm(), periods)
     }
 
@@ -118,7 +118,7 @@ impl Robot {
     /// Where the robots attached to it are. Those that nobody else hears are so known two links away, in case
     /// that it stops as well.
     pub(super) fn locate_branches(&mut self) {
-        let present = self.tree_children().filter(|known| known.is_present(self.period));
+        let present = self.tree_children().filter(|known| known.is_present(self.schedule.period()));
         let places = present.map(|known| Branch { robot: known.id(), place: known.position() });
         let now: Vec<Branch> = places.collect();
         if *self.branches != now {
@@ -171,7 +171,8 @@ impl Robot {
 
     /// The places of wrecks that are not heard in this control period, and how far they may be from there.
     fn obstacles(&self) -> impl Iterator<Item = (Point, f64)> {
-        let is_heard = |robot| self.neighbour(robot).is_some_and(|it| it.heard_in == self.period);
+        let is_heard =
+            |robot| self.neighbour(robot).is_some_and(|it| it.heard_in == self.schedule.period());
         let unheard = move |wreck: &&Wreck| !is_heard(wreck.robot);
         self.wrecks.iter().filter(unheard).map(|wreck| (wreck.place, self.astray(wreck)))
     }

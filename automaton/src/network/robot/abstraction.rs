@@ -73,7 +73,7 @@ impl<'a> RobotView<'a> {
             let number = post.0.checked_sub(FIRST_NEW_POST)?;
             Some(number / (POSTS_OF_A_PERIOD * robot.site.robots as u32))
         };
-        held.into_iter().any(|post| made_in(post) == Some(robot.period))
+        held.into_iter().any(|post| made_in(post) == Some(robot.schedule.period()))
     }
 
     /// The robots that are gone, as far as it knows.
@@ -141,7 +141,7 @@ impl Robot {
 
     /// The next round counts as the first one of a control period, in which all robots send.
     pub fn count_rounds_anew(&mut self) {
-        self.round_count.restart();
+        self.schedule.count_rounds_anew();
     }
 
     /// Every way to an access point counts as confirmed anew.
@@ -164,7 +164,7 @@ impl Robot {
 
     /// From now on control periods count: this one has the number `now`.
     pub fn count_periods(&mut self, now: u32) {
-        self.period = now;
+        self.schedule.join(now);
     }
 
     /// Where control periods count, the next one begins; the robot has made no progress for
@@ -178,10 +178,10 @@ impl Robot {
         still_periods: u32,
         is_next: bool,
     ) -> Result<(), RobotError> {
-        self.is_new = false;
-        self.period += u32::from(is_next);
+        self.schedule.take_new();
+        self.schedule.join(self.schedule.period() + u32::from(is_next));
         self.posts_made = 0;
-        let numbers = Numbers { now: self.period, passed: u32::from(!is_next) };
+        let numbers = Numbers { now: self.schedule.period(), passed: u32::from(!is_next) };
         let validity = self.site.roll_validity();
         self.roll.called = numbers.of(self.roll.called, validity + 1);
         self.confirmation = self.confirmation.renumbered(|it| numbers.of(it, OLDEST_CONFIRMATION));
@@ -198,7 +198,7 @@ impl Robot {
     /// What the robot tells beside its beacon: the control period, the roll, and the confirmation that it
     /// passes on.
     pub fn tell_now(&mut self) -> (u32, Roll, Option<u32>) {
-        (self.period, self.roll.clone(), self.pass_on_confirmation())
+        (self.schedule.period(), self.roll.clone(), self.pass_on_confirmation())
     }
 
     /// The [`account`](Self::account) of a robot where control periods count. Where bodies lie that do
@@ -208,8 +208,8 @@ impl Robot {
         let seen: BTreeSet<NodeId> = seen.map(|wreck| wreck.robot).collect();
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
-        let told = (self.period, &self.roll, self.confirmation, reports);
-        let waits = (self.orphaned_periods, self.is_late, self.is_new, self.is_behind);
+        let told = (self.schedule.period(), &self.roll, self.confirmation, reports);
+        let waits = (self.orphaned_periods, self.is_late, self.schedule.waits());
         let mut account = self.account();
         account.extend([format!("{told:?}"), format!("{waits:?}{seen:?}{heard:?}")]);
         account
@@ -259,11 +259,7 @@ impl Robot {
             rate: _,
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
-            control: _,
-            round_count: _,
-            acts: _,
-            is_new: _,
-            is_behind: _,
+            schedule: _,
             heard_way: _,
             is_displaced: _,
             is_late: _,
@@ -276,7 +272,6 @@ impl Robot {
             compared_at: _,
             measured_at: _,
             last_beacon: _,
-            period: _,
             heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,
@@ -301,10 +296,8 @@ impl Robot {
             // Routes and motion.
             routing: _,
             reservation: _,
-            destination: _,
             target: _, // by the announcement
-            waypoint: _,
-            goes_by_link: _,
+            navigation: _,
             negotiation: _,
             bodies: _,
         } = self;

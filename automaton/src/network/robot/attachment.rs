@@ -421,7 +421,7 @@ impl Robot {
         };
         // On its way along Σ it holds no post, and knows no way itself.
         let is_linked = self.lineage().is_some() || own.is_none();
-        for neighbour in self.neighbours.iter().filter(|it| it.is_present(self.period)) {
+        for neighbour in self.neighbours.iter().filter(|it| it.is_present(self.schedule.period())) {
             let is_child = neighbour.is_attached_to(own);
             reports.take_in(&neighbour.beacon, is_child, self.id, is_linked);
         }

@@ -52,8 +52,8 @@ macro_rules! context {
             id: $robot.id,
             site: &$robot.site,
             rate: $robot.rate,
-            period: $robot.period,
-            rounds: $robot.round_count,
+            period: $robot.schedule.period(),
+            rounds: $robot.schedule.rounds(),
         }
     };
 }

@@ -102,15 +102,15 @@ impl Holds<Control> for Robot {
     type Effects = Acts;
 
     fn current(&self) -> &Current<Control> {
-        &self.control
+        self.schedule.control()
     }
 
     fn current_mut(&mut self) -> &mut Current<Control> {
-        &mut self.control
+        self.schedule.control_mut()
     }
 
     fn carry_out(&mut self, acts: Acts) {
-        self.acts = acts;
+        self.schedule.carry_out(acts);
     }
 }
 
@@ -123,10 +123,10 @@ impl Robot {
         passed: usize,
         outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
-        self.round_count.pass(passed + 1);
+        self.schedule.pass_rounds(passed + 1);
         let site = Arc::clone(&self.site);
         site.automata.control.step_in_place::<Control>(self)?;
-        for act in std::mem::take(&mut self.acts) {
+        for act in self.schedule.take_acts() {
             self.perform(*act, outputs)?;
         }
         self.tell_observers(outputs);
@@ -144,7 +144,7 @@ impl Robot {
             }
             Act::TellBeacon => self.tell_beacon(outputs),
             Act::SurveyLinks => {
-                if std::mem::take(&mut self.is_new) {
+                if self.schedule.take_new() {
                     self.look_around();
                 }
                 self.survey_links();
@@ -154,7 +154,7 @@ impl Robot {
             Act::TellMultiplier => self.routing.send_report(outputs),
             Act::StepPrimal => self.routing.primal_step(context!(self)),
             Act::StepDual => self.routing.dual_step(context!(self)),
-            Act::CountRounds => self.round_count.restart(),
+            Act::CountRounds => self.schedule.count_rounds_anew(),
             Act::BeginSweep => self.routing.begin_sweep(context!(self), outputs),
             Act::EndSweep => self.routing.end_sweep(context!(self)),
             Act::SettleResidual => self.routing.settle_residual(context!(self)),

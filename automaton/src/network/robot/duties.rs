@@ -99,7 +99,7 @@ impl Robot {
             self.note_change();
             if self.duty.post().is_some_and(|post| Some(post.id) != held) {
                 // Who held the post before may be one control period ahead.
-                let period = self.period.saturating_add(u32::from(self.is_behind));
+                let period = self.schedule.newest_period();
                 self.confirmation.take_over(period);
             }
             if self.duty.post().is_some_and(|post| post.id == self.new_post().id) {

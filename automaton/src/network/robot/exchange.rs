@@ -372,7 +372,7 @@ mod tests {
 
     fn hear(robot: &mut Robot, beacon: &Beacon) {
         let beacon = Arc::new(beacon.clone());
-        let period = robot.period;
+        let period = robot.schedule.period();
         let message = Message::Beacon { period, roll: Roll::default(), confirmed: None, beacon };
         let mut outputs = Outputs::of(0);
         robot.step(Input::Heard { from: 1, message: &message }, &mut outputs).expect("it goes on");
@@ -449,10 +449,10 @@ mod tests {
 
     /// The robot is in its seventh period, and robot 1 is gone if that is said.
     fn begins_a_period(robot: &mut Robot, is_gone: bool) {
-        robot.period = 7;
+        robot.schedule.is_in(7);
         let gone = if is_gone { [1].into_iter().collect() } else { IdSet::default() };
         robot.roll = Roll { called: 7, absent: Arc::new(Absent { gone, ..Absent::default() }) };
-        robot.round_count.restart();
+        robot.schedule.count_rounds_anew();
         robot.begin_period().expect("guards have values");
     }
 

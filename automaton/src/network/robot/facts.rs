@@ -147,13 +147,13 @@ facts! {
             /// By how much rounding may take it outside.
             rounding: FEASIBILITY_TOLERANCE,
             /// The number of this round of beacons.
-            round: robot.round_count.count() as f64,
+            round: robot.schedule.rounds().count() as f64,
             /// The number of rounds in this control period.
             rounds: robot.site.settings.rounds_per_period as f64,
         }
         propositions {
             /// Another node has begun the next control period.
-            behind: robot.is_behind,
+            behind: robot.schedule.is_behind(),
             /// Its post has a parent, and it hears that or is not gone.
             names_parent: robot.heard_way != HeardWay::NoParent,
             /// Its parent tells a way to an access point that leads through its own post.
@@ -245,23 +245,23 @@ facts! {
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
             /// This round of the iterations is for multipliers.
-            hears_multipliers: robot.round_count.is_for_multipliers(),
+            hears_multipliers: robot.schedule.rounds().is_for_multipliers(),
             /// This iteration is the last of the control period.
-            last_iteration: robot.round_count.is_last_of(robot.site.settings.routing_iterations),
+            last_iteration: robot.schedule.rounds().is_last_of(robot.site.settings.routing_iterations),
             /// This round of a sweep is for demands.
-            hears_demands: robot.round_count.of_sweep() == SweepRound::Demands,
+            hears_demands: robot.schedule.rounds().of_sweep() == SweepRound::Demands,
             /// This round of a sweep is for flows.
-            hears_flows: robot.round_count.of_sweep() == SweepRound::Flows,
+            hears_flows: robot.schedule.rounds().of_sweep() == SweepRound::Flows,
             /// This round of a sweep is for shortages.
-            hears_shortages: robot.round_count.of_sweep() == SweepRound::Shortages,
+            hears_shortages: robot.schedule.rounds().of_sweep() == SweepRound::Shortages,
             /// This sweep is the last of the control period.
-            last_sweep: robot.round_count.is_last_sweep(),
+            last_sweep: robot.schedule.rounds().is_last_sweep(),
             /// The last requests for flows of the control period have been answered.
-            last_answers: robot.round_count.is_last_of_reservation(),
+            last_answers: robot.schedule.rounds().is_last_of_reservation(),
             /// This round of the negotiation is for proposals.
-            hears_proposals: robot.round_count.is_for_proposals(),
+            hears_proposals: robot.schedule.rounds().is_for_proposals(),
             /// Moves have been judged for the last time in this control period.
-            last_attempt: robot.round_count.is_last_attempt(),
+            last_attempt: robot.schedule.rounds().is_last_attempt(),
             /// Routes are found by ADAL.
             adal: robot.site.settings.routing_method == RoutingMethod::Adal,
             /// It exchanges duties now, and takes over that of a robot on standby.

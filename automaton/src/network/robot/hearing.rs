@@ -178,10 +178,10 @@ impl Robot {
         confirmed: Option<u32>,
         beacon: &Arc<Beacon>,
     ) {
-        if period < self.period {
+        if period < self.schedule.period() {
             return;
         }
-        if period > self.period {
+        if period > self.schedule.period() {
             self.hear_of_later_period(period);
         }
         // Beacons of a round mostly come in the order of their senders, and have no news.
@@ -190,7 +190,7 @@ impl Robot {
             && Arc::ptr_eq(&known.beacon, beacon)
             && known.measured_at == self.body.position()
         {
-            let is_back = known.note_heard(period, self.period);
+            let is_back = known.note_heard(period, self.schedule.period());
             if is_back || self.awaits_confirmation && known.confirmed < confirmed {
                 self.revision.advance();
             }
@@ -227,7 +227,7 @@ impl Robot {
         if !is_same && beacon.is_older_than(&known.beacon) {
             return;
         }
-        let is_back = known.note_heard(period, self.period);
+        let is_back = known.note_heard(period, self.schedule.period());
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
         let renewed =
@@ -253,16 +253,16 @@ impl Robot {
     /// silence counted.
     pub(super) fn end_round(&mut self) {
         self.heard_up_to = 0;
-        let counts_silence = self.round_count.count() <= ROUNDS_TO_BE_HEARD;
+        let counts_silence = self.schedule.rounds().count() <= ROUNDS_TO_BE_HEARD;
         let (mut at, mut hears_all) = (0, true);
         while let Some(known) = self.neighbours.get_mut(at) {
             let is_heard = std::mem::take(&mut known.is_heard);
             // A message may have arrived after the last round of the period before.
-            hears_all &= is_heard && known.heard_in == self.period;
+            hears_all &= is_heard && known.heard_in == self.schedule.period();
             at = if is_heard || !counts_silence { at + 1 } else { self.miss(at) };
         }
         if counts_silence {
-            self.heard_all_in = hears_all.then_some(self.period);
+            self.heard_all_in = hears_all.then_some(self.schedule.period());
         }
     }
 
@@ -272,7 +272,7 @@ impl Robot {
     /// granted them, nor, for a while, one that is attached to this robot's post: a branch is not cut off
     /// because its messages are lost. A robot that is gone is not waited for, once no packets flow to it.
     fn miss(&mut self, at: usize) -> usize {
-        let (own, period) = (self.duty.post().map(|post| post.id), self.period);
+        let (own, period) = (self.duty.post().map(|post| post.id), self.schedule.period());
         let Some(known) = self.neighbours.get_mut(at) else { return at };
         let (was_silent, was_heard) = (known.is_silent(), known.was_heard());
         let has_moved = known.measured_at != self.body.position();
@@ -310,7 +310,7 @@ impl Robot {
     /// side. No message that is lost gives a robot the right to move.
     pub(super) fn may_leave_place(&self) -> bool {
         let is_sure = |known: &Neighbour| {
-            known.heard_in == self.period
+            known.heard_in == self.schedule.period()
                 || known.is_access_point()
                 || !self.site.is_near(known.distance) && !self.may_meet(&known.wreck())
                 || self.is_gone(known.id())

@@ -20,7 +20,7 @@ impl Robot {
     pub(super) fn tell_proposal(&mut self, outputs: &mut NodeOutputs) {
         if self.negotiation.has_proposal() {
             let (reliant, witness) = (self.reliant(), self.witness());
-            self.negotiation.send(self.period, &reliant, witness, outputs);
+            self.negotiation.send(self.schedule.period(), &reliant, witness, outputs);
         }
     }
 
@@ -37,7 +37,7 @@ impl Robot {
         segment: Segment,
         witness: Option<NodeId>,
     ) {
-        self.out_of_sight.note(Wreck::setting_off(from, segment, self.period));
+        self.out_of_sight.note(Wreck::setting_off(from, segment, self.schedule.period()));
         if self.roll.absent.contains(from) {
             self.note_change();
         }
@@ -70,7 +70,7 @@ impl Robot {
         if !self.reliant().is_empty() {
             return None;
         }
-        let heard = self.neighbours.iter().filter(|known| known.heard_in == self.period);
+        let heard = self.neighbours.iter().filter(|known| known.heard_in == self.schedule.period());
         let mut candidates: Vec<NodeId> = heard.map(Neighbour::id).collect();
         candidates.sort_by_key(|&node| Some(node) != self.parent); // the parent first
         let turn = self.body.still_periods() as usize % candidates.len().max(1);
@@ -96,7 +96,7 @@ impl Robot {
                 return;
             }
         }
-        self.negotiation.consent(self.period, outputs);
+        self.negotiation.consent(self.schedule.period(), outputs);
     }
 
     /// Whether all moves together are acceptable; if not, an objection is sent to those that could be the cause. Its own
@@ -109,7 +109,7 @@ impl Robot {
             return true;
         }
         let overloading = if is_overloaded { self.overloading_movers(own) } else { Vec::new() };
-        let period = self.period;
+        let period = self.schedule.period();
         for mover in self.negotiation.movers() {
             if overstretched == Some(mover) || overloading.contains(&mover) {
                 outputs.send(mover, Message::Objection { period });
@@ -130,7 +130,7 @@ impl Robot {
     }
 
     fn is_last_chance(&self) -> bool {
-        self.stage() == Stage::Negotiation && self.round_count.is_last_chance()
+        self.stage() == Stage::Negotiation && self.schedule.rounds().is_last_chance()
     }
 
     /// Whether it does not know where a robot is on which it relies.

@@ -31,6 +31,7 @@ mod lineage;
 mod links;
 mod mission;
 mod motion;
+mod navigation;
 mod negotiation;
 mod neighbours;
 mod partner;
@@ -41,6 +42,7 @@ mod reservation;
 mod revision;
 mod rounds;
 mod routing;
+mod schedule;
 mod skipped_work;
 mod step;
 mod target;
@@ -55,7 +57,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_continuous::geometry::Destination;
 use pleach_discrete::network::{
     Agreement, Anchor, Bid, Confirmation, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId,
     Role,
@@ -83,7 +84,6 @@ use crate::located::Current;
 use super::beacon::{
     Announced, Announcement, Beacon, Branch, Bulletin, CallRoute, LastBeacon, Notice, TeamReport,
 };
-use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Standby, Station};
 use super::member::NodeOutputs;
 use super::message::Message;
@@ -100,14 +100,15 @@ use duties::Label;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
+use navigation::Navigation;
 use negotiation::Negotiation;
 use neighbours::Neighbours;
 use partner::{Answered, PastOffers};
 use places::places;
 use reservation::{Plan, Reservation, lease_of};
 use revision::{Revision, Stamp};
-use rounds::Rounds;
 use routing::{Receiver, Routing, Survey};
+use schedule::Schedule;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
 const FIRST_NEW_POST: u32 = 1 << 31;
@@ -124,17 +125,13 @@ pub struct Robot {
     neighbours: Neighbours,
     /// The newest roll that it knows.
     roll: Roll,
-    /// How many control periods have begun.
-    period: u32,
     /// Where in the table of neighbours the next beacon is expected.
     heard_up_to: u32,
 
     // At a tick: what it knows from the beginning, where it stands in its control period and rounds of beacons,
     // sweeps or negotiation, and what it does now.
     site: Arc<Site>,
-    control: Current<Control>,
-    round_count: Rounds,
-    acts: Acts,
+    schedule: Schedule,
 
     /// How often its own state, or what it has received, has changed.
     revision: Revision,
@@ -144,12 +141,8 @@ pub struct Robot {
     measured_at: Stamp,
     /// Another parent would be better, and is not confirmed yet.
     awaits_confirmation: bool,
-    /// Another node has begun the next control period.
-    is_behind: bool,
     /// The last control period in which it has heard all its neighbours in the last round in which all robots send.
     heard_all_in: Option<u32>,
-    /// Whether this is its first period.
-    is_new: bool,
     is_quiet: bool,
 
     id: NodeId,
@@ -247,10 +240,7 @@ pub struct Robot {
     followed_post: Option<PostId>,
 
     // Motion.
-    destination: Option<Destination>,
-    waypoint: Option<Point>,
-    /// Whether it follows a way that its link requires.
-    goes_by_link: bool,
+    navigation: Navigation,
     negotiation: Negotiation,
     /// The robots of other fleets near it.
     bodies: Bodies,
@@ -264,12 +254,8 @@ impl Robot {
         Robot {
             id,
             rate,
-            control: Current::new(Control::Moving(Moving)),
-            round_count: Rounds::default(),
-            acts: &[],
+            schedule: Schedule::default(),
             heard_all_in: None,
-            is_new: true,
-            is_behind: false,
             body: Body::at(position, site.settings.period),
             duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
             label: Label::Alone,
@@ -289,7 +275,6 @@ impl Robot {
             past_offers: None,
             answered: BTreeMap::new(),
             neighbours: Neighbours::default(),
-            period: 0,
             roll: Roll::default(),
             out_of_sight: Sightings::default(),
             missing: Sightings::default(),
@@ -332,9 +317,7 @@ impl Robot {
             followed_post: None,
             routing: Routing::new(site.settings.routing_method),
             reservation: Reservation::default(),
-            destination: None,
-            waypoint: None,
-            goes_by_link: false,
+            navigation: Navigation::default(),
             negotiation: Negotiation::default(),
             bodies: Bodies::default(),
             log: Vec::new(),
@@ -342,16 +325,10 @@ impl Robot {
         }
     }
 
-    /// Another node has begun a control period that this robot has not. Control periods begin together: a robot
-    /// that has just begun, or has heard nobody since, learns which one this is, and any other begins it as soon
-    /// as its own is over but for the move.
+    /// Another node has begun a control period that this robot has not.
     fn hear_of_later_period(&mut self, period: u32) {
-        if self.is_new {
-            return self.begin_late(period);
-        }
-        self.is_behind = true;
-        if period > self.period + 1 {
-            self.begin_late(period - 1);
+        if let Some(period) = self.schedule.receive_later_period(period) {
+            self.begin_late(period);
         }
     }
 
@@ -369,18 +346,18 @@ impl Robot {
         let fresh = Robot::new(self.id, place, self.rate, site);
         let known = std::mem::replace(self, fresh);
         self.forgotten_offers = known.offers().offers_made();
-        (self.control, self.acts, self.round_count) =
-            (known.control, known.acts, known.round_count);
+        let period = known.schedule.period();
+        self.schedule = known.schedule.begun_again();
         self.body = Body::at(known.body.position(), known.body.clock());
-        (self.is_new, self.posts_made) = (false, known.posts_made);
+        self.posts_made = known.posts_made;
         (self.roll, self.log) = (known.roll, known.log);
-        self.join_in(known.period);
+        self.join_in(period);
         self.report_role_after(role);
         self.jump_duty(Label::Alone).map(drop)
     }
 
     fn join_in(&mut self, period: u32) {
-        self.period = period;
+        self.schedule.join(period);
         if period > 1 {
             (self.is_late, self.is_quiet, self.joined_in) = (true, false, period);
             self.note_change();
@@ -389,7 +366,8 @@ impl Robot {
 
     /// The post of a redundant robot that no robot has ever had.
     pub(super) fn new_post(&self) -> Post {
-        let made = self.period.wrapping_mul(POSTS_OF_A_PERIOD).wrapping_add(self.posts_made);
+        let made =
+            self.schedule.period().wrapping_mul(POSTS_OF_A_PERIOD).wrapping_add(self.posts_made);
         let number = made.wrapping_mul(self.site.robots as u32).wrapping_add(self.id as u32);
         Post::redundant(PostId(FIRST_NEW_POST | number))
     }
@@ -399,7 +377,7 @@ impl Robot {
     fn tell_beacon(&mut self, outputs: &mut NodeOutputs) {
         let beacon = self.next_beacon();
         if self.last_beacon.tell() {
-            let (period, roll) = (self.period, self.roll.clone());
+            let (period, roll) = (self.schedule.period(), self.roll.clone());
             let confirmed = self.pass_on_confirmation();
             outputs.broadcast(Message::Beacon { period, roll, confirmed, beacon });
         }

@@ -132,7 +132,7 @@ impl Robot {
     fn approach(&mut self, goal: Option<Point>) {
         self.negotiation.begin();
         let Some(goal) = goal else {
-            if self.waypoint.take().is_some() {
+            if self.navigation.stop() {
                 self.note_change();
             }
             return;
@@ -141,7 +141,7 @@ impl Robot {
             return;
         }
         let Some(waypoint) = self.first_waypoint(goal) else { return };
-        self.waypoint = Some(waypoint);
+        self.navigation.turn_to(waypoint);
         let problem = self.motion_problem(waypoint);
         let segment = Segment { from: self.body.position(), to: self.solve(&problem).target };
         if segment.length() > LEAST_MOVE * self.site.settings.step_radius
@@ -158,7 +158,7 @@ impl Robot {
         if !self.site.settings.errors.are_none() && !problem.admits(&self.body.position()) {
             let motion = problem.solve_from_outside();
             let way = |from: Point| {
-                let goal = self.destination.as_ref();
+                let goal = self.navigation.destination();
                 goal.map_or(0.0, |goal| self.site.free_space.distance_to(from, goal))
             };
             return match way(motion.target) < way(self.body.position()) {
@@ -285,8 +285,8 @@ impl Robot {
     /// itself before: that is as near to its true place, and what it has told of itself remains true. One
     /// that wants to go on and cannot measures itself anew from time to time: with other errors it may.
     pub(super) fn correct_position(&mut self, position: Point) {
-        let tries_again =
-            self.waypoint.is_some() && (self.body.still_periods() + 1).is_multiple_of(PERSISTENCE);
+        let tries_again = self.navigation.waypoint().is_some()
+            && (self.body.still_periods() + 1).is_multiple_of(PERSISTENCE);
         let has_moved = self.body.is_moving() || tries_again;
         let off = (position - self.body.position()).norm();
         if has_moved || off > 2.0 * self.site.settings.errors.position * (1.0 + ROUNDING) {
@@ -302,8 +302,8 @@ impl Robot {
         let leash = (STILL * self.clearance().min(settings.step_radius)).max(self.stray());
         self.body.set_off(segment, leash, settings.period);
         match self.trail.last_mut() {
-            Some((period, place)) if *place == segment.from => *period = self.period,
-            _ => self.trail.push((self.period, segment.from)),
+            Some((period, place)) if *place == segment.from => *period = self.schedule.period(),
+            _ => self.trail.push((self.schedule.period(), segment.from)),
         }
         self.note_period_boundary();
     }
@@ -316,10 +316,9 @@ impl Robot {
 
     /// A new control period begins.
     pub(super) fn restart_clock(&mut self) {
-        self.period = self.period.saturating_add(1);
+        self.schedule.begin_period();
         self.note_period_boundary();
         self.posts_made = 0;
         self.body.restart_clock();
-        self.is_behind = false;
     }
 }

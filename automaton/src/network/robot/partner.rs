@@ -348,6 +348,6 @@ impl Robot {
     /// duties that one has, if any, is not known.
     pub(super) fn has_lost_partner(&self) -> bool {
         let partner = self.partner_in_exchange();
-        self.round_count.count() == 0 && partner.is_some_and(|partner| self.is_gone(partner))
+        self.schedule.rounds().count() == 0 && partner.is_some_and(|partner| self.is_gone(partner))
     }
 }

@@ -47,7 +47,8 @@ macro_rules! places {
             context: $crate::network::robot::context!($robot),
             neighbours: &$robot.neighbours,
             negotiation: &$robot.negotiation,
-            has_heard_all: $robot.heard_all_in == Some($robot.period) && !$robot.is_behind,
+            has_heard_all: $robot.heard_all_in == Some($robot.schedule.period())
+                && !$robot.schedule.is_behind(),
         }
     };
 }

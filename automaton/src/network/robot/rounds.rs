@@ -147,7 +147,7 @@ impl Robot {
             }
             _ => return 0,
         };
-        if has_nothing_to_do { last.saturating_sub(self.round_count.count() + 1) } else { 0 }
+        if has_nothing_to_do { last.saturating_sub(self.schedule.rounds().count() + 1) } else { 0 }
     }
 
     /// The round of the reservation in which the robot asks or looks for circles again, or the last one.
@@ -155,14 +155,14 @@ impl Robot {
         if !self.reservation.asks_again() {
             return RESERVATION;
         }
-        let asked = self.round_count.times_asked_again();
+        let asked = self.schedule.rounds().times_asked_again();
         ((asked + 1) * ROUNDS_FOR_AN_ANSWER).min(RESERVATION)
     }
 
     /// Whether it has heard nothing new, told its beacon often enough, and counts no rounds: of
     /// silence or of an election.
     fn needs_no_round(&self) -> bool {
-        let counts_silence = self.round_count.count() < ROUNDS_TO_BE_HEARD;
+        let counts_silence = self.schedule.rounds().count() < ROUNDS_TO_BE_HEARD;
         !self.has_news() && self.last_beacon.is_told() && !counts_silence && !self.counts_rounds()
     }
 }

@@ -41,12 +41,14 @@ impl Robot {
             && self.is_quiet
             && !self.is_late
             && !self.awaits_confirmation
-            && self.waypoint.is_none()
+            && self.navigation.waypoint().is_none()
             && !self.body.is_moving()
             && self.orphaned_periods == 0
             && self.roll.absent.is_empty()
             && self.wrecks.is_empty()
-            && self.heard_all_in.is_some_and(|period| period.saturating_add(1) >= self.period)
+            && self
+                .heard_all_in
+                .is_some_and(|period| period.saturating_add(1) >= self.schedule.period())
     }
 
     /// Whether its facts are as it has measured them, and no guard holds.

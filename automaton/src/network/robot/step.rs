@@ -12,7 +12,6 @@ use pleach_discrete::network::{NodeId, Stage};
 use super::Robot;
 use super::context::context;
 use crate::automaton::{InvariantError, TransitionError};
-use crate::located::Place as _;
 use crate::network::control::Control;
 use crate::network::member::{NodeOutputs, Sense};
 use crate::network::message::Message;
@@ -150,7 +149,7 @@ impl Robot {
 
     /// Where it stands in its control period.
     pub(super) fn stage(&self) -> Stage {
-        self.control.location()
+        self.schedule.stage()
     }
 
     /// Between jumps, by eq. (23).
@@ -160,7 +159,7 @@ impl Robot {
 
     /// Time until the next sample is due.
     fn time_to_sample(&self) -> f64 {
-        match self.is_behind {
+        match self.schedule.is_behind() {
             true => 0.0,
             false => self.body.time_to_arrival(self.site.settings.period),
         }
@@ -215,7 +214,7 @@ impl Robot {
             Message::Proposal { period, .. }
             | Message::Objection { period }
             | Message::Consent { period }
-                if *period != self.period => {}
+                if *period != self.schedule.period() => {}
             Message::Proposal { segment, witness, .. } => {
                 self.hear_proposal(from, *segment, *witness);
             }

@@ -305,7 +305,7 @@ impl Robot {
     /// shortest way changes over to the other side of an obstacle.
     fn length_ahead(&self, node: &Neighbour) -> f64 {
         let now = self.walk_to(node);
-        let ahead = self.waypoint.map(|waypoint| {
+        let ahead = self.navigation.waypoint().map(|waypoint| {
             let way = waypoint - self.body.position();
             let step = self.site.settings.step_radius.min(way.norm());
             let place = self.body.position() + way.try_normalize(0.0).unwrap_or_default() * step;

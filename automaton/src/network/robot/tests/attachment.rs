@@ -600,7 +600,7 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
     assert_eq!(*robot.serves, *set(&[1, 3]));
     assert_eq!(robot.parent, Some(1));
     // One that has not been heard in this period or the one before is not reported.
-    robot.period = NOW + 2;
+    robot.schedule.is_in(NOW + 2);
     robot.look_after_place().expect("it goes on");
     assert_eq!((&*robot.below, &*robot.strays), (&*set(&[0]), &*set(&[])));
 }

@@ -33,7 +33,7 @@ fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
     assert!(corrects(0.001, &|robot| robot.body.is_moving_by(Vector::new(0.1, 0.0))));
     for (still, tries) in [(0, false), (2, false), (3, true), (4, false), (7, true)] {
         let wants = |robot: &mut Robot| {
-            robot.waypoint = Some(east(1.0));
+            robot.navigation.turn_to(east(1.0));
             robot.body.waits(still);
         };
         assert_eq!(corrects(0.001, &wants), tries, "{still}");

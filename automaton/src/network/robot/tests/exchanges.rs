@@ -36,7 +36,7 @@ impl Scene {
         let center = HERE + 0.5 * (other - HERE);
         let robots = (0..).zip(places).map(|(id, place)| {
             let mut robot = Robot::new(id, place, 0.1, Arc::clone(site));
-            (robot.period, robot.is_new) = (NOW, false);
+            robot.schedule.is_in(NOW);
             robot.body.waits(12);
             robot.stretched = stretched;
             robot.holds(post_of(id, link));

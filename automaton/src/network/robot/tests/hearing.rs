@@ -5,14 +5,15 @@ use pleach_discrete::network::Stage;
 
 use super::*;
 use crate::network::robot::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
+use crate::network::robot::schedule::Schedule;
 use crate::network::roll::Absent;
 use crate::node::{Node as _, Outputs};
 
 /// A round passes in which robots send, and this robot hears nobody.
 fn silent_rounds(robot: &mut Robot, rounds: usize) {
     for _ in 0..rounds {
-        robot.round_count.restart();
-        robot.round_count.pass(1);
+        robot.schedule.count_rounds_anew();
+        robot.schedule.pass_rounds(1);
         robot.end_round();
     }
 }
@@ -73,10 +74,10 @@ fn a_robot_attached_to_this_one_is_waited_for_for_some_periods() {
     let far = watch_radius(&robot) + 0.1;
     robot.hears(beacon(1, east(far), redundant(11, 20), &[]));
     silent_rounds(&mut robot, 10);
-    robot.period = NOW + PATIENCE_WITH_CHILDREN;
+    robot.schedule.is_in(NOW + PATIENCE_WITH_CHILDREN);
     silent_rounds(&mut robot, 1);
     assert_eq!(hears(&robot), [1]);
-    robot.period += 1;
+    robot.schedule.is_in(robot.schedule.period() + 1);
     silent_rounds(&mut robot, 1);
     assert!(hears(&robot).is_empty());
 }
@@ -86,14 +87,14 @@ fn silence_counts_only_in_rounds_in_which_all_send() {
     let mut robot = robot();
     robot.hears(beacon(1, east(1.9), redundant(11, 12), &[]));
     for _ in 0..10 {
-        robot.round_count.restart();
-        robot.round_count.pass(ROUNDS_TO_BE_HEARD + 1);
+        robot.schedule.count_rounds_anew();
+        robot.schedule.pass_rounds(ROUNDS_TO_BE_HEARD + 1);
         robot.end_round();
     }
     assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, 0)]);
     for _ in 0..2 {
-        robot.round_count.restart();
-        robot.round_count.pass(ROUNDS_TO_BE_HEARD);
+        robot.schedule.count_rounds_anew();
+        robot.schedule.pass_rounds(ROUNDS_TO_BE_HEARD);
         robot.end_round();
     }
     assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, 2)]);
@@ -145,10 +146,10 @@ fn old_messages_are_ignored() {
 #[test]
 fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
     let mut late = robot();
-    (late.period, late.is_new) = (0, true);
+    late.schedule = Schedule::default();
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     late.hear_beacon(7, None, &heard);
-    assert_eq!((late.period, late.is_late), (7, true));
+    assert_eq!((late.schedule.period(), late.is_late), (7, true));
     late.advance_exchange().expect("its guards have values");
     assert_eq!(
         late.offers().offers_made(),
@@ -156,14 +157,18 @@ fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
         "its next offer is newer than any that it has forgotten"
     );
     let mut first = robot();
-    (first.period, first.is_new) = (0, true);
+    first.schedule = Schedule::default();
     first.hear_beacon(1, None, &heard);
-    assert_eq!((first.period, first.is_late), (1, false), "all begin together");
+    assert_eq!((first.schedule.period(), first.is_late), (1, false), "all begin together");
     let mut running = robot();
     running.hear_beacon(NOW + 1, None, &heard);
-    assert_eq!((running.period, running.is_late), (NOW, false), "it is in the period before");
+    assert_eq!(
+        (running.schedule.period(), running.is_late),
+        (NOW, false),
+        "it is in the period before"
+    );
     running.hear_beacon(NOW + 2, None, &Arc::new(beacon(2, west(0.5), redundant(12, 13), &[])));
-    assert_eq!((running.period, running.is_late), (NOW + 1, true), "it has missed one");
+    assert_eq!((running.schedule.period(), running.is_late), (NOW + 1, true), "it has missed one");
     running.advance_exchange().expect("its guards have values");
     assert_eq!(
         running.offers().offers_made(),
@@ -187,10 +192,10 @@ fn a_control_period_begins_when_the_first_clock_is_due() {
     assert_eq!(robot.time_to_tick(), Some(0.0));
     robot.tick(0, &mut Outputs::of(0)).expect("it goes on");
     assert_eq!(
-        (robot.period, robot.stage(), robot.body.position()),
+        (robot.schedule.period(), robot.stage(), robot.body.position()),
         (NOW + 1, Stage::Beacons, place)
     );
-    assert!(!robot.is_behind && robot.body.clock() == 0.0);
+    assert!(!robot.schedule.is_behind() && robot.body.clock() == 0.0);
 }
 
 #[test]
@@ -198,7 +203,7 @@ fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_con
     let mut robot = robot();
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     let is_news = |robot: &mut Robot, period: u32, confirmed: Option<u32>, hint: u32| {
-        robot.period = period;
+        robot.schedule.is_in(period);
         robot.processed_at.renew(robot.revision);
         robot.heard_up_to = hint;
         robot.hear_beacon(period, confirmed, &heard);
@@ -206,7 +211,7 @@ fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_con
     };
     assert!(is_news(&mut robot, NOW, None, 0), "the first one");
     for hint in [0, 1] {
-        let now = robot.period;
+        let now = robot.schedule.period();
         assert!(!is_news(&mut robot, now, None, hint));
         assert!(!is_news(&mut robot, now + 1, None, hint), "heard in the period before");
         assert!(is_news(&mut robot, now + 3, None, hint), "it was absent");
@@ -230,14 +235,14 @@ fn a_robot_moves_only_if_it_has_heard_all_that_are_near_in_this_period() {
     assert!(robot.may_leave_place());
     robot.hears(beacon(1, east(near + 0.01), redundant(11, 12), &[]));
     robot.hears(access_point(west(0.2)));
-    robot.period += 1;
+    robot.schedule.is_in(robot.schedule.period() + 1);
     assert!(robot.may_leave_place(), "neither can get in its way");
     robot.hears(beacon(2, east(near - 0.01), redundant(12, 13), &[]));
     assert!(robot.may_leave_place());
-    robot.period += 1;
+    robot.schedule.is_in(robot.schedule.period() + 1);
     assert!(!robot.may_leave_place(), "one nearby has not been heard since");
     robot.hears(beacon(2, east(near - 0.01), redundant(12, 13), &[]));
-    robot.period += robot.site.roll_validity();
+    robot.schedule.is_in(robot.schedule.period() + robot.site.roll_validity());
     robot.neighbours = Neighbours::default();
     assert!(!robot.may_leave_place(), "the roll is not valid any more");
 }
@@ -273,7 +278,7 @@ fn a_robot_that_has_fallen_silent_may_have_come_near() {
     };
     let may_leave_after = |robot: &mut Robot, periods: u32, called: u32| {
         robot.hear_roll(&Roll { called: NOW + called, ..Roll::default() });
-        robot.period = NOW + periods;
+        robot.schedule.is_in(NOW + periods);
         robot.may_leave_place()
     };
     let lost = || {
@@ -310,7 +315,8 @@ fn a_robot_stays_where_another_starts_nearby_that_it_has_not_heard() {
         hall.robot[0].position = HERE.into();
         hall.robot[1].position = east(gap).into();
         let mut robot = robot_of(&hall);
-        (robot.period, robot.is_new) = (1, true);
+        robot.schedule = Schedule::default();
+        robot.schedule.join(1);
         if hears_it {
             robot.hears(beacon(1, east(gap), redundant(1, 12), &[]));
         }
@@ -329,7 +335,7 @@ fn a_robot_stays_where_another_starts_nearby_that_it_has_not_heard() {
 fn a_robot_that_joins_late_stays_until_it_is_told_who_is_absent() {
     let may_leave = |period: u32, called: u32| {
         let mut robot = robot();
-        robot.is_new = true;
+        robot.schedule.starts();
         robot.hear_of_later_period(period);
         robot.look_around();
         robot.hear_roll(&Roll { called, ..Roll::default() });
@@ -350,7 +356,7 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
     let standing = || {
         let mut robot = flows::router();
         robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(20, 0) });
-        robot.round_count.restart();
+        robot.schedule.count_rounds_anew();
         robot.end_round();
         robot.parent = robot.tree_parent();
         robot.process_messages().expect("guards have values");
@@ -360,7 +366,7 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
     };
     let deliberates = |mut robot: Robot| {
         robot.restart_clock();
-        robot.round_count.restart();
+        robot.schedule.count_rounds_anew();
         robot.begin_period().expect("guards have values");
         robot.has_news()
     };

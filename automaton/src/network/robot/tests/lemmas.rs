@@ -239,11 +239,13 @@ fn new_posts_are_new() {
         for (period, posts_made) in
             (0..6).flat_map(|it| (0..POSTS_OF_A_PERIOD).map(move |n| (it, n)))
         {
-            (robot.period, robot.posts_made) = (period, posts_made);
+            robot.schedule.is_in(period);
+            robot.posts_made = posts_made;
             made.insert(robot.new_post().id.0);
             count += 1;
         }
-        (robot.period, robot.posts_made) = (NOW, 0);
+        robot.schedule.is_in(NOW);
+        robot.posts_made = 0;
         robot.is_late = true;
         robot.measures();
         let expected = robot.new_post().id;
@@ -280,13 +282,14 @@ fn robots_move_as_the_lemma_says() {
         for (at, &place) in places.iter().enumerate() {
             robot.hears(beacon(at + 1, place, redundant(11 + at as u32, 99), &[]));
         }
-        robot.period += 1;
+        robot.schedule.is_in(robot.schedule.period() + 1);
         for (at, &place) in places.iter().enumerate().filter(|&(at, _)| known[at] == Known::Heard) {
             robot.hears(beacon(at + 1, place, redundant(11 + at as u32, 99), &[]));
         }
         let gone: IdSet = (1..4).filter(|&at| known[at - 1] == Known::Gone).collect();
         let suspended: IdSet = is_suspended.then_some(0).into_iter().collect();
-        robot.roll = Roll { called: robot.period, absent: Arc::new(Absent { suspended, gone }) };
+        robot.roll =
+            Roll { called: robot.schedule.period(), absent: Arc::new(Absent { suspended, gone }) };
         let may_leave = !is_suspended && known[..2].iter().all(|it| *it != Known::Silent);
         assert_eq!(robot.may_leave_place(), may_leave, "{known:?}");
         let proposal = proposed(&mut robot);

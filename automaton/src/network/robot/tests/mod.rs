@@ -81,7 +81,7 @@ pub(super) fn hall() -> Scenario {
 fn robot_of(scenario: &Scenario) -> Robot {
     let site = Arc::new(Site::new(scenario).expect("its numbers make sense"));
     let mut robot = Robot::new(0, HERE, 0.1, site);
-    (robot.period, robot.is_new) = (NOW, false);
+    robot.schedule.is_in(NOW);
     robot
 }
 
@@ -174,7 +174,7 @@ pub(super) fn sent(outputs: &mut NodeOutputs) -> Vec<(Destination, Message)> {
 impl Robot {
     /// It hears a beacon in this control period.
     fn hears(&mut self, beacon: Beacon) {
-        self.hear_beacon(self.period, None, &Arc::new(beacon));
+        self.hear_beacon(self.schedule.period(), None, &Arc::new(beacon));
     }
 
     /// So much flows to this node, over a lease that lasts.

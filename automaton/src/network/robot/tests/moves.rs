@@ -136,7 +136,7 @@ fn a_robot_relies_on_robots_that_it_has_heard_in_this_period() {
         robot.hears(heard);
         robot.survey_links();
         robot.routing.plans(&[0.1]);
-        robot.period += 1;
+        robot.schedule.is_in(robot.schedule.period() + 1);
         robot.is_unsure()
     };
     assert!(!is_unsure(access_point(west(1.0))));
@@ -150,10 +150,9 @@ fn a_robot_that_hears_all_knows_where_they_are_unless_they_are_ahead() {
     let other = || beacon(5, west(1.0), fixed(13, 14), &[13, 14]);
     robot.hears(other());
     robot.end_round();
-    assert_eq!(robot.heard_all_in, Some(robot.period));
+    assert_eq!(robot.heard_all_in, Some(robot.schedule.period()));
     assert!(robot.knows_place_of(5) && !robot.knows_place_of(4));
-    robot.is_new = false;
-    robot.hear_beacon(robot.period + 1, None, &Arc::new(other()));
+    robot.hear_beacon(robot.schedule.period() + 1, None, &Arc::new(other()));
     assert!(!robot.knows_place_of(5));
 }
 
@@ -162,11 +161,11 @@ fn a_robot_that_hears_all_knows_where_they_are_unless_they_are_ahead() {
 fn what_arrives_after_the_last_round_is_not_heard_in_the_next_period() {
     let mut robot = attached_mover();
     let other = Arc::new(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
-    let hear = |robot: &mut Robot| robot.hear_beacon(robot.period, None, &other);
+    let hear = |robot: &mut Robot| robot.hear_beacon(robot.schedule.period(), None, &other);
     hear(&mut robot);
     robot.end_round();
     hear(&mut robot);
-    robot.period += 1;
+    robot.schedule.is_in(robot.schedule.period() + 1);
     robot.end_round();
     assert!(!robot.knows_place_of(5));
     assert_eq!(robot.heard_all_in, None);
@@ -198,7 +197,7 @@ fn a_certified_move_takes_a_control_period() {
     let mut robot = mover();
     robot.negotiation.intends(Some(Segment { from: HERE, to: east(0.07) }));
     robot.restart_clock();
-    assert_eq!(robot.period, NOW + 1);
+    assert_eq!(robot.schedule.period(), NOW + 1);
     robot.set_off();
     robot.advance(robot.site.settings.period);
     assert_eq!(robot.body.position(), east(0.07));
@@ -294,7 +293,7 @@ fn a_move_that_is_over_is_forgotten() {
     let segment = Segment { from: west(1.0), to: west(0.95) };
     robot.hear_proposal(5, segment, None);
     assert_eq!(known(&mut robot), Wreck::setting_off(5, segment, NOW));
-    robot.period += 1;
+    robot.schedule.is_in(robot.schedule.period() + 1);
     robot.hears(beacon(5, west(0.95), redundant(13, 14), &[13, 14]));
     assert_eq!(known(&mut robot), Wreck::heard(5, west(0.95), NOW + 1));
 }
@@ -437,15 +436,15 @@ fn a_robot_gives_its_move_up_at_the_last_chance() {
     for (rounds, moves) in [(15, true), (16, false)] {
         let mut robot = mover();
         proposed(&mut robot).expect("nothing is in its way");
-        robot.control = Current::new(Control::Negotiation(Negotiation));
-        robot.round_count.restart();
-        robot.round_count.pass(rounds);
+        robot.schedule.is_at(Control::Negotiation(Negotiation));
+        robot.schedule.count_rounds_anew();
+        robot.schedule.pass_rounds(rounds);
         robot.yield_to_objection();
         assert_eq!(robot.negotiation.proposal().is_some(), moves, "{rounds}");
     }
     let mut elsewhere = mover();
     proposed(&mut elsewhere).expect("nothing is in its way");
-    elsewhere.round_count.pass(16);
+    elsewhere.schedule.pass_rounds(16);
     elsewhere.yield_to_objection();
     assert!(elsewhere.negotiation.proposal().is_some(), "rounds of another stage do not count");
 }

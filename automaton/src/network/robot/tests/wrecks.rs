@@ -101,7 +101,7 @@ fn where_branches_are_is_known_two_links_away() {
     bearer.locate_branches();
     assert_eq!(*bearer.branches, [Branch { robot: 3, place: east(1.5) }]);
     let told = Arc::clone(&bearer.branches);
-    bearer.period += 2;
+    bearer.schedule.is_in(bearer.schedule.period() + 2);
     bearer.locate_branches();
     assert!(bearer.branches.is_empty(), "it does not hear it any more");
     let mut robot = robot();
@@ -123,7 +123,7 @@ fn a_wreck_that_is_heard_is_a_robot_like_any_other() {
     assert_eq!(robot.keep_out_discs(CLEARANCE).count(), 1);
     robot.hears(beacon(1, east(0.3), redundant(11, 12), &[]));
     assert_eq!(robot.keep_out_discs(CLEARANCE).count(), 0);
-    robot.period += 1;
+    robot.schedule.is_in(robot.schedule.period() + 1);
     assert_eq!(robot.keep_out_discs(CLEARANCE).count(), 1);
 }
 
@@ -144,7 +144,7 @@ fn a_robot_that_an_error_has_led_too_far_stays() {
 fn new_posts_are_none_that_a_robot_begins_with() {
     for bit in 0..32 {
         let mut robot = robot();
-        robot.period = 1 << bit;
-        assert!(robot.new_post().id.0 >= 1 << 31, "in control period {}", robot.period);
+        robot.schedule.is_in(1 << bit);
+        assert!(robot.new_post().id.0 >= 1 << 31, "in control period {}", robot.schedule.period());
     }
 }

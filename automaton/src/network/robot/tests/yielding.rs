@@ -20,15 +20,15 @@ fn a_mover_asks_for_way_when_it_has_been_stuck_for_long() {
     let mut mover = robot();
     mover.holds(primary(30, None, 13));
     mover.advances_to(east(3.0));
-    mover.waypoint = Some(east(3.0));
+    mover.navigation.turn_to(east(3.0));
     for (periods, asks) in [(0, false), (15, false), (16, true), (17, true)] {
         mover.body.waits(periods);
         assert_eq!(mover.way_asked_for().is_some(), asks, "{periods}");
     }
-    mover.waypoint = None;
+    mover.navigation.stop();
     assert_eq!(mover.way_asked_for(), None, "it wants to go nowhere");
     let mut parked = posted();
-    parked.waypoint = Some(east(0.1));
+    parked.navigation.turn_to(east(0.1));
     parked.body.waits(20);
     assert_eq!(parked.way_asked_for(), None, "it stands where it should");
     parked.hears(asking(0.1));
@@ -194,7 +194,7 @@ fn who_gives_up_stepping_aside_asks_for_no_way() {
     robot.holds(redundant(20, 13));
     robot.hears(beacon(2, Point::new(5.0, 4.4), fixed(13, 12), &[13, 12]));
     robot.hears(asking(0.1));
-    robot.waypoint = Some(east(0.1));
+    robot.navigation.turn_to(east(0.1));
     robot.body.waits(20);
     // The way of the mover now leads by at such a distance that no place beside is better.
     let shift = Vector::new(0.0, 2.15 * CLEARANCE);
