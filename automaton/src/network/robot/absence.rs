@@ -9,21 +9,18 @@
 //!
 //! Every robot tells where those are that are attached to it: if the only one that hears a robot stops,
 //! its own neighbours still know where that was.
-//!
-//! A robot that is cut off cannot know in which period it was heard last, but that this was not before
-//! its newest roll was called. So it stays within two steps of each place where it has been since.
+//! A robot that is cut off stays within two steps of each place where it has been since its newest roll was called
+//! ([`membership`](super::membership)).
 
 use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, HalfPlane};
 use pleach_continuous::network::reliability::LinkReliability;
-use pleach_discrete::network::NodeId;
 
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::{MARGIN, ROUNDING};
-use crate::network::access_point::PATIENCE;
 use crate::network::beacon::{Beacon, Branch};
 use crate::network::roll::{Roll, Wreck};
 use crate::network::scenario::Settings;
@@ -32,56 +29,32 @@ use crate::network::scenario::Settings;
 /// not known.
 const ASTRAY: f64 = 2.0;
 
-/// A roll that is called so many control periods after a robot was heard last tells whether it takes part: the
-/// first access point misses it after its patience, and reports of it may be as old when they arrive.
-const TOLD_AFTER: u32 = 2 * PATIENCE;
-
 impl Robot {
     /// A roll is received.
     #[inline]
     pub(super) fn hear_roll(&mut self, roll: &Roll) {
-        let called = self.roll.called;
-        if self.roll.merge(roll) {
+        if self.membership.receive_roll(roll) {
             self.note_change();
-        }
-        if self.roll.called > called {
-            self.trail.retain(|&(period, _)| period >= self.roll.called);
-            self.missing.retain(|lost| lost.heard_in.saturating_add(TOLD_AFTER) > self.roll.called);
         }
     }
 
     /// It has begun, and heard who is in range. One that starts well in range, and that it has not heard, may be
     /// on its way.
     pub(super) fn look_around(&mut self) {
-        if self.is_late_comer() {
+        if self.membership.is_late_comer() {
             return;
         }
         for (robot, start) in self.site.starts_well_in_range(self.body.position()) {
             if robot != self.id && self.neighbour(robot).is_none() {
-                self.missing.note(Wreck::heard(robot, start, 0));
+                self.membership.miss(Wreck::heard(robot, start, 0));
             }
         }
     }
 
-    /// Whether it has begun later than others, and so does not know where robots are that it does not hear.
-    fn is_late_comer(&self) -> bool {
-        self.joined_in > 0
-    }
-
-    /// Whether it has been told of all that do not take part: one that has begun later than others is,
-    /// by a roll that is called long enough afterwards.
-    pub(super) fn knows_who_is_absent(&self) -> bool {
-        !self.is_late_comer() || self.joined_in.saturating_add(TOLD_AFTER) <= self.roll.called
-    }
-
     /// Whether it takes part by a roll that is valid.
     pub(super) fn is_called(&self) -> bool {
-        self.roll.lets_move(self.id, self.schedule.period(), self.site.roll_validity())
-    }
-
-    /// Whether a robot is called gone.
-    pub(super) fn is_gone(&self, robot: NodeId) -> bool {
-        self.roll.calls_gone(robot)
+        let validity = self.site.roll_validity();
+        self.membership.roll().lets_move(self.id, self.schedule.period(), validity)
     }
 
     /// A robot is out of sight: where it was heard last.
@@ -89,15 +62,10 @@ impl Robot {
         if lost.is_access_point() {
             return;
         }
-        self.out_of_sight.note(lost.wreck());
-        if self.site.is_well_in_range(lost.distance) && !self.is_gone(lost.id()) {
-            self.missing.note(lost.wreck());
+        self.membership.note(lost.wreck());
+        if self.site.is_well_in_range(lost.distance) && !self.membership.is_gone(lost.id()) {
+            self.membership.miss(lost.wreck());
         }
-    }
-
-    /// A robot is heard that was out of sight.
-    pub(super) fn find(&mut self, robot: NodeId) {
-        self.missing.retain(|lost| lost.robot != robot);
     }
 
     /// Whether a robot that was heard here last may be on its way, and so near by now that the two could come
@@ -111,8 +79,8 @@ impl Robot {
     pub(super) fn locate_wrecks(&mut self) {
         let silent = self.neighbours.iter().filter(|known| known.is_silent());
         let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter().copied());
-        let seen = self.out_of_sight.iter().chain(told).chain(silent.map(Neighbour::wreck));
-        self.roll.absent.locate(&mut self.wrecks, seen, |robot| self.site.start_of(robot));
+        let seen = told.chain(silent.map(Neighbour::wreck));
+        self.membership.locate_wrecks(seen, |robot| self.site.start_of(robot));
     }
 
     /// Where the robots attached to it are. Those that nobody else hears are so known two links away, in case
@@ -128,7 +96,7 @@ impl Robot {
 
     /// A beacon tells of robots that are attached to its sender.
     pub(super) fn note_branches(&mut self, beacon: &Beacon, period: u32) {
-        beacon.sightings(period).for_each(|seen| self.out_of_sight.note(seen));
+        beacon.sightings(period).for_each(|seen| self.membership.note(seen));
     }
 
     /// How far a robot that is not heard any more may be from where it was heard last.
@@ -145,8 +113,8 @@ impl Robot {
         let farthest = self.farthest_astray();
         let earshot = self.site.radio.range() + farthest + step + clearance;
         let is_near = |place: &Point| (place - wreck.place).norm() <= earshot;
-        let lost = self.wrecks.iter().filter(|other| other.robot != wreck.robot);
-        let may_lack_witness = !self.is_gone(wreck.robot)
+        let lost = self.membership.wrecks().iter().filter(|other| other.robot != wreck.robot);
+        let may_lack_witness = !self.membership.is_gone(wreck.robot)
             || lost.map(|other| other.place).any(|place| is_near(&place))
             || self.site.access_points.iter().skip(1).any(is_near);
         // Each of two moves ends off by its error; one is part of the planning clearance.
@@ -157,7 +125,7 @@ impl Robot {
     /// its newest roll was called.
     pub(super) fn discs_of_trail(&self) -> impl Iterator<Item = Disc> {
         let astray = self.farthest_astray();
-        self.trail.iter().map(move |&(_, center)| Disc {
+        self.membership.trail().map(move |center| Disc {
             center,
             radius: astray.max((center - self.body.position()).norm()),
         })
@@ -166,7 +134,7 @@ impl Robot {
     /// Whether it is there; a move that was off may have led it farther.
     pub(super) fn is_near_trail(&self) -> bool {
         let leash = self.farthest_astray() * (1.0 + ROUNDING);
-        self.trail.iter().all(|(_, place)| (place - self.body.position()).norm() <= leash)
+        self.membership.trail().all(|place| (place - self.body.position()).norm() <= leash)
     }
 
     /// The places of wrecks that are not heard in this control period, and how far they may be from there.
@@ -174,7 +142,11 @@ impl Robot {
         let is_heard =
             |robot| self.neighbour(robot).is_some_and(|it| it.heard_in == self.schedule.period());
         let unheard = move |wreck: &&Wreck| !is_heard(wreck.robot);
-        self.wrecks.iter().filter(unheard).map(|wreck| (wreck.place, self.astray(wreck)))
+        self.membership
+            .wrecks()
+            .iter()
+            .filter(unheard)
+            .map(|wreck| (wreck.place, self.astray(wreck)))
     }
 
     /// The discs that no way leads through.

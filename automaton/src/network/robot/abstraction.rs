@@ -13,7 +13,6 @@ use pleach_discrete::network::{Bid, Confirmation, IdSet, NodeId, NoticeId, PostI
 
 use super::facts::STATIONARY_WINDOW;
 use super::hearing::PATIENCE_WITH_CHILDREN;
-use super::revision::Stamp;
 use super::{FIRST_NEW_POST, POSTS_OF_A_PERIOD, Robot, RobotError, RobotView};
 use crate::network::beacon::Beacon;
 use crate::network::duty::Path;
@@ -78,7 +77,7 @@ impl<'a> RobotView<'a> {
 
     /// The robots that are gone, as far as it knows.
     pub fn gone(self) -> &'a IdSet {
-        &self.robot().roll.absent.gone
+        &self.robot().membership.roll().absent.gone
     }
 
     /// The path Σ that was announced last.
@@ -132,11 +131,11 @@ impl Robot {
     /// Whether what the robot would leave out if nothing new came would change nothing. What it leaves
     /// out is not told by its [`account`](Self::account).
     pub fn leaves_out_nothing(&self) -> bool {
-        let (beacon, told) = (self.public_state(), self.last_beacon.get());
-        let is_new = |stamp: Stamp| !stamp.is_of(self.revision);
-        (is_new(self.processed_at) || self.overlooked().is_none())
-            && (is_new(self.compared_at) || told.is_none_or(|told| *told == beacon))
-            && (is_new(self.measured_at) || self.facts_stand())
+        let (beacon, told) = (self.public_state(), self.outbox.beacon());
+        let [is_processed, is_compared, is_measured] = self.changes.are_derived();
+        (!is_processed || self.overlooked().is_none())
+            && (!is_compared || told.is_none_or(|told| *told == beacon))
+            && (!is_measured || self.facts_stand())
     }
 
     /// The next round counts as the first one of a control period, in which all robots send.
@@ -183,7 +182,7 @@ impl Robot {
         self.posts_made = 0;
         let numbers = Numbers { now: self.schedule.period(), passed: u32::from(!is_next) };
         let validity = self.site.roll_validity();
-        self.roll.called = numbers.of(self.roll.called, validity + 1);
+        self.membership.renumber(|called| numbers.of(called, validity + 1));
         self.confirmation = self.confirmation.renumbered(|it| numbers.of(it, OLDEST_CONFIRMATION));
         for known in self.neighbours.iter_mut() {
             known.heard_in = numbers.of(known.heard_in, PATIENCE_WITH_CHILDREN + 1);
@@ -198,17 +197,16 @@ impl Robot {
     /// What the robot tells beside its beacon: the control period, the roll, and the confirmation that it
     /// passes on.
     pub fn tell_now(&mut self) -> (u32, Roll, Option<u32>) {
-        (self.schedule.period(), self.roll.clone(), self.pass_on_confirmation())
+        (self.schedule.period(), self.membership.roll().clone(), self.pass_on_confirmation())
     }
 
     /// The [`account`](Self::account) of a robot where control periods count. Where bodies lie that do
     /// not take part is left out: it matters for motion alone.
     pub fn account_in_time(&self) -> Vec<String> {
-        let seen = self.out_of_sight.iter().chain(self.wrecks.iter().copied());
-        let seen: BTreeSet<NodeId> = seen.map(|wreck| wreck.robot).collect();
+        let seen: BTreeSet<NodeId> = self.membership.seen().collect();
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
-        let told = (self.schedule.period(), &self.roll, self.confirmation, reports);
+        let told = (self.schedule.period(), self.membership.roll(), self.confirmation, reports);
         let waits = (self.orphaned_periods, self.is_late, self.schedule.waits());
         let mut account = self.account();
         account.extend([format!("{told:?}"), format!("{waits:?}{seen:?}{heard:?}")]);
@@ -253,26 +251,21 @@ impl Robot {
             followed_post,
             closed,
             posts_made,
-            neighbours: _,   // by their beacons and their silence
-            heard_all_in: _, // by their silence
+            neighbours: _, // by their beacons and their silence
             // Constant.
             rate: _,
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
             schedule: _,
+            changes: _,
+            outbox: _,
+            membership: _,
             heard_way: _,
             is_displaced: _,
             is_late: _,
             label: _,
             facts: _,
-            is_quiet: _,
             forgotten_offers: _, // by its offers
-            revision: _,
-            processed_at: _,
-            compared_at: _,
-            measured_at: _,
-            last_beacon: _,
-            heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,
             // The explorer confirms every way.
@@ -280,19 +273,12 @@ impl Robot {
             awaits_confirmation: _,
             partner: _,
             taking_over: _,
-            log: _,
             // No robot is missed, and no task, where no time passes; and none restarts.
             forgetful: _,
             strays: _,
             serves: _,
             orphaned_periods: _,
-            roll: _,
-            out_of_sight: _,
-            missing: _,
-            joined_in: _,
-            wrecks: _,
             branches: _,
-            trail: _,
             // Routes and motion.
             routing: _,
             reservation: _,

@@ -85,7 +85,9 @@ impl Robot {
         let enough = PATIENCE_WITH_UNUSED_POSTS + 1;
         self.unused_periods =
             if counts && !is_paused { enough.min(self.unused_periods + 1) } else { 0 };
-        self.is_quiet &= self.unused_periods < PATIENCE_WITH_UNUSED_POSTS;
+        if self.unused_periods >= PATIENCE_WITH_UNUSED_POSTS {
+            self.changes.allow_jump();
+        }
     }
 
     /// Whether it is a bound leader, and nodes that the last task or team has left without a branch may not have become

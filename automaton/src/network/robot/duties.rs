@@ -95,7 +95,7 @@ impl Robot {
         let jump = site.automata.duty.step_in_place::<Duty>(self);
         self.label = Label::Alone;
         if matches!(jump, Ok(Some(_))) {
-            self.is_quiet = false;
+            self.changes.allow_jump();
             self.note_change();
             if self.duty.post().is_some_and(|post| Some(post.id) != held) {
                 // Who held the post before may be one control period ahead.

@@ -134,7 +134,7 @@ impl Robot {
         let site = Arc::clone(&self.site);
         while let Some(jump) = site.automata.exchange.step_in_place::<Exchange>(self)? {
             self.note_change();
-            self.is_quiet = false;
+            self.changes.allow_jump();
             if jump.event == ExchangeEvent::PartnerLost {
                 self.begin_again()?;
             }
@@ -415,7 +415,8 @@ mod tests {
         let mut robot = robot();
         let mut posts = BTreeSet::new();
         for made in 1..=3 {
-            (robot.is_late, robot.is_quiet) = (true, false);
+            robot.is_late = true;
+            robot.changes.allow_jump();
             robot.note_change();
             robot.jump().expect("guards have values");
             posts.insert(robot.duty.post().expect("it stands by").id);
@@ -451,7 +452,9 @@ mod tests {
     fn begins_a_period(robot: &mut Robot, is_gone: bool) {
         robot.schedule.is_in(7);
         let gone = if is_gone { [1].into_iter().collect() } else { IdSet::default() };
-        robot.roll = Roll { called: 7, absent: Arc::new(Absent { gone, ..Absent::default() }) };
+        robot
+            .membership
+            .is_told(Roll { called: 7, absent: Arc::new(Absent { gone, ..Absent::default() }) });
         robot.schedule.count_rounds_anew();
         robot.begin_period().expect("guards have values");
     }
@@ -469,7 +472,10 @@ mod tests {
             assert_eq!(robot.is_engaged(), !is_gone);
             assert_eq!(robot.duty.post().map(|post| post.id) != Some(before), is_gone);
             if is_gone {
-                assert!(!robot.knows_who_is_absent(), "it waits like one that joins late");
+                assert!(
+                    !robot.membership.knows_who_is_absent(),
+                    "it waits like one that joins late"
+                );
                 robot.advance_exchange().expect("guards have values");
                 assert_eq!(robot.offers().offers_made(), 1, "its next offer is a new one");
             }
@@ -503,7 +509,7 @@ mod tests {
                 assert_eq!(robot.exchange.location(), ExchangeStage::Free);
                 assert!(robot.offers().reply().is_none() && !robot.is_engaged());
             }
-            robot.roll = Roll::default();
+            robot.membership.is_told(Roll::default());
             robot.bulletin = robot.bulletin.next(2, Shared::new(Notice::Task(task())));
             robot.announced = Some((robot.notice_id(), task()));
             offer_duty(&mut mover);

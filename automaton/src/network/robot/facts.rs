@@ -293,14 +293,13 @@ facts! {
 impl Robot {
     /// Measures the facts; returns whether a guard may hold that did not hold before.
     pub(super) fn measure(&mut self) -> bool {
-        if !self.measured_at.renew(self.revision) && self.caches() {
+        if !self.changes.measure() && self.caches() {
             debug_assert!(self.may_skip(Self::facts_stand), "robot {} goes by old facts", self.id);
             return false;
         }
         let facts = self.facts_now();
-        let may_jump = facts != self.facts || !self.is_quiet;
+        let may_jump = self.changes.may_jump(facts != self.facts);
         self.facts = facts;
-        self.is_quiet = true;
         let is_right = |robot: &Self| may_jump || robot.is_at_rest();
         debug_assert!(self.may_skip(is_right), "robot {} misses a transition", self.id);
         may_jump

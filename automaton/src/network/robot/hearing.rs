@@ -185,17 +185,17 @@ impl Robot {
             self.hear_of_later_period(period);
         }
         // Beacons of a round mostly come in the order of their senders, and have no news.
-        let expected = self.neighbours.get_mut(self.heard_up_to as usize);
+        let expected = self.neighbours.expected_mut();
         if let Some(known) = expected
             && Arc::ptr_eq(&known.beacon, beacon)
             && known.measured_at == self.body.position()
         {
             let is_back = known.note_heard(period, self.schedule.period());
             if is_back || self.awaits_confirmation && known.confirmed < confirmed {
-                self.revision.advance();
+                self.changes.note();
             }
             known.confirmed = known.confirmed.max(confirmed);
-            self.heard_up_to += 1;
+            self.neighbours.expect_next();
         } else {
             self.hear_news(period, confirmed, beacon);
         }
@@ -210,13 +210,13 @@ impl Robot {
                 let neighbour =
                     Neighbour::new(beacon, confirmed, period, self.body.position(), &self.site);
                 self.neighbours.insert(at, neighbour);
-                self.find(beacon.sender);
+                self.membership.find(beacon.sender);
                 self.note_branches(beacon, period);
                 self.note_change();
             }
         }
         let (Ok(at) | Err(at)) = known;
-        self.heard_up_to = at as u32 + 1;
+        self.neighbours.expect_after(at);
     }
 
     /// A neighbour that the robot knows is heard again. What it has passed on counts for the post that it
@@ -252,7 +252,7 @@ impl Robot {
     /// A round of beacons is over. In the first rounds of a period all robots send; only in these is
     /// silence counted.
     pub(super) fn end_round(&mut self) {
-        self.heard_up_to = 0;
+        self.neighbours.expect_first();
         let counts_silence = self.schedule.rounds().count() <= ROUNDS_TO_BE_HEARD;
         let (mut at, mut hears_all) = (0, true);
         while let Some(known) = self.neighbours.get_mut(at) {
@@ -262,7 +262,7 @@ impl Robot {
             at = if is_heard || !counts_silence { at + 1 } else { self.miss(at) };
         }
         if counts_silence {
-            self.heard_all_in = hears_all.then_some(self.schedule.period());
+            self.neighbours.note_round(hears_all.then_some(self.schedule.period()));
         }
     }
 
@@ -286,7 +286,7 @@ impl Robot {
             && period <= known.heard_in.saturating_add(PATIENCE_WITH_CHILDREN);
         let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
-        let is_gone = is_silent && self.is_gone(id);
+        let is_gone = is_silent && self.membership.is_gone(id);
         let is_out_of_sight = (is_lost && !is_kept || is_gone) && !self.reservation.sends_to(id);
         if is_out_of_sight || reliability <= 0.0 {
             let lost = self.neighbours.remove(at);
@@ -313,13 +313,13 @@ impl Robot {
             known.heard_in == self.schedule.period()
                 || known.is_access_point()
                 || !self.site.is_near(known.distance) && !self.may_meet(&known.wreck())
-                || self.is_gone(known.id())
+                || self.membership.is_gone(known.id())
         };
         self.is_called()
-            && self.knows_who_is_absent()
+            && self.membership.knows_who_is_absent()
             && self.is_near_trail()
             && self.neighbours.iter().all(is_sure)
-            && !self.missing.iter().any(|lost| self.may_meet(&lost))
+            && !self.membership.missing().any(|lost| self.may_meet(&lost))
             && !self.would_lose_parent()
     }
 

@@ -37,8 +37,8 @@ impl Robot {
         segment: Segment,
         witness: Option<NodeId>,
     ) {
-        self.out_of_sight.note(Wreck::setting_off(from, segment, self.schedule.period()));
-        if self.roll.absent.contains(from) {
+        self.membership.note(Wreck::setting_off(from, segment, self.schedule.period()));
+        if self.membership.is_absent(from) {
             self.note_change();
         }
         let waits = self.relies_on(from) || witness == Some(self.id);

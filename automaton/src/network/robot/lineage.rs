@@ -93,7 +93,7 @@ impl Robot {
             return HeardWay::NoParent;
         };
         match (self.lineage_of(anchor), self.lineage()) {
-            (None, _) if self.is_gone(self.id) => HeardWay::NoParent,
+            (None, _) if self.membership.is_gone(self.id) => HeardWay::NoParent,
             (None, _) => HeardWay::Silence,
             (Some(way), Some(own)) if own.extends(&way, post.id) => HeardWay::Known,
             (Some(way), _) if way.contains(post.id) => HeardWay::Cycle,

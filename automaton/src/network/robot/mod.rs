@@ -29,11 +29,13 @@ mod judging;
 mod leader;
 mod lineage;
 mod links;
+mod membership;
 mod mission;
 mod motion;
 mod navigation;
 mod negotiation;
 mod neighbours;
+mod outbox;
 mod partner;
 mod path;
 mod places;
@@ -82,14 +84,13 @@ use crate::automaton::TransitionError;
 use crate::located::Current;
 
 use super::beacon::{
-    Announced, Announcement, Beacon, Branch, Bulletin, CallRoute, LastBeacon, Notice, TeamReport,
+    Announced, Announcement, Beacon, Branch, Bulletin, CallRoute, Notice, TeamReport,
 };
 use super::duty::{Duty, Held, Standby, Station};
 use super::member::NodeOutputs;
 use super::message::Message;
 use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
-use super::roll::{Roll, Sightings, Wreck};
 use super::shared::Shared;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
@@ -100,13 +101,15 @@ use duties::Label;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
+use membership::Membership;
 use navigation::Navigation;
 use negotiation::Negotiation;
 use neighbours::Neighbours;
+use outbox::Outbox;
 use partner::{Answered, PastOffers};
 use places::places;
 use reservation::{Plan, Reservation, lease_of};
-use revision::{Revision, Stamp};
+use revision::Changes;
 use routing::{Receiver, Routing, Survey};
 use schedule::Schedule;
 
@@ -123,50 +126,26 @@ pub struct Robot {
     // its neighbours is expected to be heard next.
     body: Body,
     neighbours: Neighbours,
-    /// The newest roll that it knows.
-    roll: Roll,
-    /// Where in the table of neighbours the next beacon is expected.
-    heard_up_to: u32,
+    membership: Membership,
 
     // At a tick: what it knows from the beginning, where it stands in its control period and rounds of beacons,
     // sweeps or negotiation, and what it does now.
     site: Arc<Site>,
     schedule: Schedule,
 
-    /// How often its own state, or what it has received, has changed.
-    revision: Revision,
-    /// When it last processed messages, compared its beacon and measured its facts.
-    processed_at: Stamp,
-    compared_at: Stamp,
-    measured_at: Stamp,
+    changes: Changes,
     /// Another parent would be better, and is not confirmed yet.
     awaits_confirmation: bool,
-    /// The last control period in which it has heard all its neighbours in the last round in which all robots send.
-    heard_all_in: Option<u32>,
-    is_quiet: bool,
 
     id: NodeId,
-    last_beacon: LastBeacon,
-    /// What it reports to observers; no robot reads it.
-    log: Vec<MissionEvent>,
+    outbox: Outbox,
 
     /// r_i.
     rate: f64,
     routing: Routing,
     reservation: Reservation,
 
-    // Where robots were that it does not hear any more or has only heard of, those that do not take part,
-    // and those that are attached to it.
-    out_of_sight: Sightings,
-    /// Robots that it does not hear any more although they were well in range, until a roll tells whether
-    /// they take part.
-    missing: Sightings,
-    /// The control period in which it has joined a mission under way; 0 if it has begun with the others.
-    joined_in: u32,
-    wrecks: Arc<Vec<Wreck>>,
     branches: Arc<Vec<Branch>>,
-    /// Where it has set off since its roll was called, each with the control period.
-    trail: Vec<(u32, Point)>,
 
     // Where it is in its automata, and what the duty automaton jumps together with.
     duty: Current<Duty>,
@@ -255,19 +234,15 @@ impl Robot {
             id,
             rate,
             schedule: Schedule::default(),
-            heard_all_in: None,
+            changes: Changes::default(),
+            outbox: Outbox::default(),
+            membership: Membership::default(),
             body: Body::at(position, site.settings.period),
             duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
             label: Label::Alone,
             posts_made: 0,
             mission: Current::new(Mission::Idle(Idle)),
             facts: Facts::default(),
-            is_quiet: false,
-            revision: Revision::FIRST,
-            processed_at: Stamp::default(),
-            compared_at: Stamp::default(),
-            measured_at: Stamp::default(),
-            last_beacon: LastBeacon::default(),
             exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
             forgotten_offers: 0,
             partner: None,
@@ -275,14 +250,7 @@ impl Robot {
             past_offers: None,
             answered: BTreeMap::new(),
             neighbours: Neighbours::default(),
-            roll: Roll::default(),
-            out_of_sight: Sightings::default(),
-            missing: Sightings::default(),
-            joined_in: 0,
-            wrecks: Arc::default(),
             branches: Arc::default(),
-            trail: Vec::new(),
-            heard_up_to: 0,
             parent: None,
             place: Current::new(PlaceInTree::Detached(lineage::Detached)),
             heard_way: HeardWay::NoParent,
@@ -320,7 +288,6 @@ impl Robot {
             navigation: Navigation::default(),
             negotiation: Negotiation::default(),
             bodies: Bodies::default(),
-            log: Vec::new(),
             site,
         }
     }
@@ -350,7 +317,8 @@ impl Robot {
         self.schedule = known.schedule.begun_again();
         self.body = Body::at(known.body.position(), known.body.clock());
         self.posts_made = known.posts_made;
-        (self.roll, self.log) = (known.roll, known.log);
+        self.membership = known.membership.begun_again();
+        self.outbox = known.outbox.begun_again();
         self.join_in(period);
         self.report_role_after(role);
         self.jump_duty(Label::Alone).map(drop)
@@ -359,7 +327,9 @@ impl Robot {
     fn join_in(&mut self, period: u32) {
         self.schedule.join(period);
         if period > 1 {
-            (self.is_late, self.is_quiet, self.joined_in) = (true, false, period);
+            self.is_late = true;
+            self.membership.join_in(period);
+            self.changes.allow_jump();
             self.note_change();
         }
     }
@@ -376,8 +346,8 @@ impl Robot {
     /// takes to be heard if some are lost, and then no more.
     fn tell_beacon(&mut self, outputs: &mut NodeOutputs) {
         let beacon = self.next_beacon();
-        if self.last_beacon.tell() {
-            let (period, roll) = (self.schedule.period(), self.roll.clone());
+        if self.outbox.takes_beacon() {
+            let (period, roll) = (self.schedule.period(), self.membership.roll().clone());
             let confirmed = self.pass_on_confirmation();
             outputs.broadcast(Message::Beacon { period, roll, confirmed, beacon });
         }
@@ -386,15 +356,15 @@ impl Robot {
     /// The beacon that the robot sends now: the very same as before unless something
     /// in it has changed.
     fn next_beacon(&mut self) -> Arc<Beacon> {
-        if !self.compared_at.renew(self.revision)
+        if !self.changes.compare()
             && self.caches()
-            && let Some(beacon) = self.last_beacon.get()
+            && let Some(beacon) = self.outbox.beacon()
         {
             let is_right = |robot: &Self| *beacon == robot.public_state();
             debug_assert!(self.may_skip(is_right), "robot {} tells old news", self.id);
             return beacon;
         }
-        let (beacon, is_new) = self.last_beacon.replace_by(self.public_state());
+        let (beacon, is_new) = self.outbox.renew_beacon(self.public_state());
         if is_new {
             self.note_change();
         }
@@ -428,7 +398,7 @@ impl Robot {
             team: self.team,
             stretched: self.stretched,
             longest_wait: self.longest_wait(),
-            wrecks: Arc::clone(&self.wrecks),
+            wrecks: Arc::clone(self.membership.wrecks()),
             branches: Arc::clone(&self.branches),
         }
     }
@@ -460,7 +430,7 @@ impl Robot {
 
     /// A control period begins: what is looked at once a period.
     fn begin_period(&mut self) -> Result<(), TransitionError> {
-        self.last_beacon.tell_anew();
+        self.outbox.send_beacon_again();
         let counted = |robot: &Self| (robot.unused_periods, robot.orphaned_periods, robot.partner);
         let before = counted(self);
         self.count_unused_periods();
@@ -485,7 +455,7 @@ impl Robot {
 
     /// Processes what it has received if that contains news, or if it is due anyway.
     fn process_news(&mut self, is_due: bool) -> Result<(), TransitionError> {
-        if !self.has_news() && !is_due && self.caches() {
+        if !self.changes.are_news() && !is_due && self.caches() {
             #[cfg(feature = "abstraction")]
             debug_assert_eq!(
                 self.is_looked_at().then(|| self.overlooked()).flatten(),
@@ -500,8 +470,7 @@ impl Robot {
 
     /// Processes what it has received, whether or not it contains news.
     fn process_messages(&mut self) -> Result<(), TransitionError> {
-        self.note_change();
-        self.processed_at.renew(self.revision);
+        self.changes.process();
         self.advance_exchange()?;
         self.locate_wrecks();
         self.locate_branches();
@@ -521,7 +490,7 @@ impl Robot {
             || self.jump_mission()?
             || self.jump_duty(Label::Alone)?.is_some();
         if jumped {
-            self.is_quiet = false;
+            self.changes.allow_jump();
             self.note_change();
         }
         self.report_role_after(role);
@@ -531,24 +500,19 @@ impl Robot {
     /// The robot's own state, or what it has received, has changed: it has to deliberate, to compare its beacon, to measure
     /// its facts and to find its links.
     fn note_change(&mut self) {
-        self.revision.advance();
-    }
-
-    /// Whether something has changed since it last processed messages.
-    fn has_news(&self) -> bool {
-        !self.processed_at.is_of(self.revision)
+        self.changes.note();
     }
 
     /// A control period's routes begin: with the links over which the robot may send from here, and with what the routing
     /// method made of them in the period before. Links that have been found stand until something changes.
     fn survey_links(&mut self) {
-        if self.caches() && self.routing.has_links_of(self.revision) {
+        if self.caches() && self.routing.has_links_of(self.changes.revision()) {
             let is_right =
                 |robot: &Self| robot.routing.would_find(context!(robot), &robot.survey());
             debug_assert!(self.may_skip(is_right), "robot {}: old links", self.id);
         } else {
             let survey = self.survey();
-            self.routing.find_links(context!(self), &survey, self.revision);
+            self.routing.find_links(context!(self), &survey, self.changes.revision());
             let Robot { routing, reservation, .. } = self;
             reservation.drop_flows_without_link(|node| routing.has_link_to(node));
         }
@@ -602,7 +566,7 @@ impl Robot {
     }
 
     fn report(&mut self, event: MissionEvent) {
-        self.log.push(event);
+        self.outbox.report(event);
     }
 
     /// ρ + e + m: the clearance that the robot keeps by what it knows.

@@ -301,10 +301,7 @@ impl Robot {
         let settings = &self.site.settings;
         let leash = (STILL * self.clearance().min(settings.step_radius)).max(self.stray());
         self.body.set_off(segment, leash, settings.period);
-        match self.trail.last_mut() {
-            Some((period, place)) if *place == segment.from => *period = self.schedule.period(),
-            _ => self.trail.push((self.schedule.period(), segment.from)),
-        }
+        self.membership.set_off(self.schedule.period(), segment.from);
         self.note_period_boundary();
     }
 

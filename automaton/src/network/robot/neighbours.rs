@@ -12,6 +12,10 @@ use super::hearing::Neighbour;
 pub(super) struct Neighbours {
     table: Vec<Neighbour>,
     keys: Vec<Key>,
+    /// The neighbour whose beacon is expected next.
+    expected: u32,
+    /// The last control period in which all have been received in the last round in which all robots send.
+    heard_all_in: Option<u32>,
 }
 
 /// What a neighbour is looked up by.
@@ -39,6 +43,41 @@ impl Neighbours {
     /// Where a node stands, or where it would.
     pub(super) fn place_of(&self, id: NodeId) -> Result<usize, usize> {
         self.keys.binary_search_by_key(&id, |key| key.id as usize)
+    }
+
+    /// The neighbour whose beacon is expected next: beacons of a round mostly arrive in the order of their senders.
+    pub(super) fn expected_mut(&mut self) -> Option<&mut Neighbour> {
+        self.table.get_mut(self.expected as usize)
+    }
+
+    /// The neighbour that was expected has been received.
+    pub(super) const fn expect_next(&mut self) {
+        self.expected += 1;
+    }
+
+    /// The neighbour there has been received.
+    pub(super) const fn expect_after(&mut self, at: usize) {
+        self.expected = at as u32 + 1;
+    }
+
+    /// A round of beacons begins.
+    pub(super) const fn expect_first(&mut self) {
+        self.expected = 0;
+    }
+
+    /// A round in which all robots send is over; this is the control period in which all have been received in it.
+    pub(super) const fn note_round(&mut self, heard_all_in: Option<u32>) {
+        self.heard_all_in = heard_all_in;
+    }
+
+    /// Whether all have been received in this control period, in the last round in which all robots send.
+    pub(super) fn have_all_been_heard_in(&self, period: u32) -> bool {
+        self.heard_all_in == Some(period)
+    }
+
+    /// Whether that is so for this control period, or was for the one before.
+    pub(super) fn have_all_been_heard_lately(&self, period: u32) -> bool {
+        self.heard_all_in.is_some_and(|heard| heard.saturating_add(1) >= period)
     }
 
     /// Those that hold `post`.

@@ -194,7 +194,7 @@ impl Robot {
             false => parked.beacon.parked,
         };
         makes_room
-            && !self.roll.absent.contains(parked.id())
+            && !self.membership.is_absent(parked.id())
             && parked.beacon.offer.is_none()
             && parked.beacon.reply.is_none()
             && within_reach
@@ -230,7 +230,7 @@ impl Robot {
             |other: &Neighbour| self.site.walk(place, other.position()) <= self.hard_length();
         let may_stand_for_it = |other: &&Neighbour| {
             !other.is_access_point()
-                && !self.roll.absent.contains(other.id())
+                && !self.membership.is_absent(other.id())
                 && (other.position() - node.position()).norm() <= beside
         };
         let mut others = self.neighbours.iter().filter(may_stand_for_it);
@@ -252,7 +252,7 @@ impl Robot {
             let (mover, offer) = (neighbour.id(), neighbour.beacon.offer.as_ref()?);
             let answered = self.answered.get(&mover).map(|answered| answered.number);
             let is_asked = offer.asks(self.id, answered)
-                || self.has_refused_in_vain(mover, offer) && !self.is_gone(mover);
+                || self.has_refused_in_vain(mover, offer) && !self.membership.is_gone(mover);
             is_asked.then_some((mover, offer))
         })
     }
@@ -328,7 +328,7 @@ impl Robot {
     /// Whether it has refused the offer of a robot that is gone.
     pub(super) fn refuses_gone_mover(&self) -> bool {
         let refusal = self.offers().reply().filter(|reply| reply.accepted.is_none());
-        refusal.is_some_and(|refusal| self.is_gone(refusal.to))
+        refusal.is_some_and(|refusal| self.membership.is_gone(refusal.to))
     }
 
     /// Whether a robot gives its duty to this one, or has given it and has not taken the other duty yet.
@@ -348,6 +348,7 @@ impl Robot {
     /// duties that one has, if any, is not known.
     pub(super) fn has_lost_partner(&self) -> bool {
         let partner = self.partner_in_exchange();
-        self.schedule.rounds().count() == 0 && partner.is_some_and(|partner| self.is_gone(partner))
+        self.schedule.rounds().count() == 0
+            && partner.is_some_and(|partner| self.membership.is_gone(partner))
     }
 }

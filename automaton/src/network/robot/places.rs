@@ -47,7 +47,7 @@ macro_rules! places {
             context: $crate::network::robot::context!($robot),
             neighbours: &$robot.neighbours,
             negotiation: &$robot.negotiation,
-            has_heard_all: $robot.heard_all_in == Some($robot.schedule.period())
+            has_heard_all: $robot.neighbours.have_all_been_heard_in($robot.schedule.period())
                 && !$robot.schedule.is_behind(),
         }
     };

@@ -9,13 +9,25 @@ pub(super) struct Revision(u64);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Stamp(Option<Revision>);
 
+/// What a robot has changed and received, and what it has derived from that.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Changes {
+    revision: Revision,
+    /// When it last processed messages, compared its beacon and measured its facts.
+    processed_at: Stamp,
+    compared_at: Stamp,
+    measured_at: Stamp,
+    /// Whether no transition can be taken before the facts change.
+    is_quiet: bool,
+}
+
 impl Revision {
     /// That of a robot from which nothing has been derived.
     pub const FIRST: Revision = Revision(0);
 
-    /// Something has changed.
-    pub const fn advance(&mut self) {
-        self.0 += 1;
+    /// The revision after this.
+    const fn next(self) -> Self {
+        Revision(self.0 + 1)
     }
 }
 
@@ -33,5 +45,123 @@ impl Stamp {
     /// It has to be derived again, whether or not anything changes.
     pub const fn expire(&mut self) {
         self.0 = None;
+    }
+}
+
+impl Default for Changes {
+    /// Those of a robot that has derived nothing.
+    fn default() -> Self {
+        Changes {
+            revision: Revision::FIRST,
+            processed_at: Stamp::default(),
+            compared_at: Stamp::default(),
+            measured_at: Stamp::default(),
+            is_quiet: false,
+        }
+    }
+}
+
+impl Changes {
+    pub const fn revision(&self) -> Revision {
+        self.revision
+    }
+
+    /// The robot's own state, or what it has received, has changed: it has to process messages, to compare its beacon, to
+    /// measure its facts and to find its links.
+    pub const fn note(&mut self) {
+        self.revision = self.revision.next();
+    }
+
+    /// A transition may be taken although no fact changes.
+    pub const fn allow_jump(&mut self) {
+        self.is_quiet = false;
+    }
+
+    /// Whether something has changed since messages were processed.
+    pub fn are_news(&self) -> bool {
+        !self.processed_at.is_of(self.revision)
+    }
+
+    /// Messages are processed: what that changes is news only from now on.
+    pub fn process(&mut self) {
+        self.note();
+        self.processed_at.renew(self.revision);
+    }
+
+    /// The beacon is compared; returns whether it may differ from the last.
+    pub fn compare(&mut self) -> bool {
+        self.compared_at.renew(self.revision)
+    }
+
+    /// The facts are measured; returns whether they may differ from the last.
+    pub fn measure(&mut self) -> bool {
+        self.measured_at.renew(self.revision)
+    }
+
+    /// Guards are evaluated with the facts; returns whether one may hold that did not hold before.
+    pub const fn may_jump(&mut self, has_new_facts: bool) -> bool {
+        let was_quiet = std::mem::replace(&mut self.is_quiet, true);
+        has_new_facts || !was_quiet
+    }
+
+    /// Whether no transition can be taken before the facts change.
+    pub const fn is_quiet(&self) -> bool {
+        self.is_quiet
+    }
+}
+
+#[cfg(feature = "abstraction")]
+impl Changes {
+    /// Whether messages, beacon and facts are as they were derived.
+    pub fn are_derived(&self) -> [bool; 3] {
+        [self.processed_at, self.compared_at, self.measured_at].map(|it| it.is_of(self.revision))
+    }
+}
+
+#[cfg(test)]
+impl Changes {
+    /// Everything has been derived.
+    pub fn settle(&mut self) {
+        self.process();
+        self.compare();
+        self.measure();
+    }
+
+    /// No transition can be taken before the facts change.
+    pub const fn rest(&mut self) {
+        self.is_quiet = true;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_derived_stands_until_something_changes() {
+        let mut changes = Changes::default();
+        assert!(changes.are_news() && changes.compare() && changes.measure());
+        changes.settle();
+        assert!(!changes.are_news() && !changes.compare() && !changes.measure());
+        changes.note();
+        assert!(changes.are_news() && changes.compare() && changes.measure());
+        changes.process();
+        assert!(!changes.are_news() && changes.compare() && changes.measure());
+    }
+
+    #[test]
+    fn guards_are_evaluated_again_with_new_facts_or_where_a_jump_is_allowed() {
+        let mut changes = Changes::default();
+        assert!(changes.may_jump(false) && !changes.may_jump(false) && changes.may_jump(true));
+        changes.allow_jump();
+        assert!(changes.may_jump(false));
+    }
+
+    #[test]
+    fn what_expires_is_derived_again() {
+        let mut stamp = Stamp::default();
+        assert!(stamp.renew(Revision::FIRST) && !stamp.renew(Revision::FIRST));
+        stamp.expire();
+        assert!(!stamp.is_of(Revision::FIRST) && stamp.renew(Revision::FIRST));
     }
 }

@@ -163,6 +163,9 @@ impl Robot {
     /// silence or of an election.
     fn needs_no_round(&self) -> bool {
         let counts_silence = self.schedule.rounds().count() < ROUNDS_TO_BE_HEARD;
-        !self.has_news() && self.last_beacon.is_told() && !counts_silence && !self.counts_rounds()
+        !self.changes.are_news()
+            && self.outbox.is_sent()
+            && !counts_silence
+            && !self.counts_rounds()
     }
 }

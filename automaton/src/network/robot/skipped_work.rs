@@ -38,17 +38,14 @@ impl Robot {
         use Duty::{Junction, Leaf, Relay, Standby};
         self.caches()
             && matches!(*self.duty, Standby(_) | Relay(_) | Junction(_) | Leaf(_))
-            && self.is_quiet
+            && self.changes.is_quiet()
             && !self.is_late
             && !self.awaits_confirmation
             && self.navigation.waypoint().is_none()
             && !self.body.is_moving()
             && self.orphaned_periods == 0
-            && self.roll.absent.is_empty()
-            && self.wrecks.is_empty()
-            && self
-                .heard_all_in
-                .is_some_and(|period| period.saturating_add(1) >= self.schedule.period())
+            && self.membership.is_complete()
+            && self.neighbours.have_all_been_heard_lately(self.schedule.period())
     }
 
     /// Whether its facts are as it has measured them, and no guard holds.

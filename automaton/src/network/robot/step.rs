@@ -130,7 +130,7 @@ impl Robot {
 
     /// Tells observers what has happened.
     pub(super) fn tell_observers(&mut self, outputs: &mut NodeOutputs) {
-        self.log.drain(..).for_each(|event| outputs.report(event));
+        self.outbox.send_reports(outputs);
     }
 
     /// The robot stands at `position`, and has not got on for `still_periods` control periods.

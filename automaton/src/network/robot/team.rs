@@ -102,7 +102,8 @@ impl Robot {
         outcome: Outcome,
         mut reason: String,
     ) -> Notice {
-        let stopped: Vec<NodeId> = self.wrecks.iter().map(|wreck| wreck.robot).collect();
+        let stopped: Vec<NodeId> =
+            self.membership.wrecks().iter().map(|wreck| wreck.robot).collect();
         if !stopped.is_empty() {
             reason.push_str(&format!("; {}", why_absent(&self.site.names_of(&stopped))));
         }

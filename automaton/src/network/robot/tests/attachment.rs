@@ -497,7 +497,7 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
     let cut_off = || {
         let mut robot = robot();
         robot.holds(fixed(20, 13));
-        robot.is_quiet = true;
+        robot.changes.rest();
         robot
     };
     let node = || {
@@ -509,7 +509,7 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
         let mut robot = node();
         change(&mut robot);
         (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| robot.count_unused_periods());
-        (robot.unused_periods, robot.is_quiet)
+        (robot.unused_periods, robot.changes.is_quiet())
     };
     assert_eq!(count(&|_| {}), (2, false));
     assert_eq!(count(&|robot| robot.holds(redundant(20, 13))), (0, true));
@@ -524,7 +524,7 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
     assert_eq!(count(&frozen), (0, true));
     let mut once = node();
     once.count_unused_periods();
-    assert!(once.is_quiet, "once is not for long");
+    assert!(once.changes.is_quiet(), "once is not for long");
     let mut cut_off = cut_off();
     (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| cut_off.count_unused_periods());
     assert_eq!(cut_off.unused_periods, 0, "its branches may be cut off from it as well");
@@ -619,11 +619,11 @@ fn a_robot_that_is_gone_and_does_not_hear_its_parent_forgets_the_way() {
     };
     assert!(knows_way(&mut robot));
     let gone = Absent { gone: IdSet::singleton(robot.id), ..Absent::default() };
-    robot.roll = Roll { called: NOW, absent: Arc::new(gone) };
+    robot.membership.is_told(Roll { called: NOW, absent: Arc::new(gone) });
     assert!(knows_way(&mut robot), "it hears its parent");
     robot.neighbours = Neighbours::default();
     assert!(!knows_way(&mut robot));
-    robot.roll.absent = Arc::default();
+    robot.membership.lacks(Absent::default());
     robot.hears(parent);
     assert!(knows_way(&mut robot));
     robot.neighbours = Neighbours::default();

@@ -116,8 +116,8 @@ impl Robot {
         };
         let wrecks: Vec<Wreck> = (0..8).map(around).collect();
         let gone = wrecks.iter().map(|wreck| wreck.robot).collect();
-        self.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
-        self.wrecks = Arc::new(wrecks);
+        self.membership.lacks(Absent { gone, ..Absent::default() });
+        self.membership.finds(wrecks);
     }
 }
 
@@ -135,7 +135,8 @@ fn a_robot_that_is_shut_off_from_the_task_bids_below_all_others() {
     assert_eq!(bid(&Robot::is_shut_in), (0, way));
     let (rank, longer) = bid(&|robot| {
         robot.is_shut_in();
-        Arc::make_mut(&mut robot.wrecks).drain(1..);
+        let first = robot.membership.wrecks()[0];
+        robot.membership.finds(vec![first]);
     });
     assert!(rank == 2 && longer < way, "the way round one of them is longer");
 }

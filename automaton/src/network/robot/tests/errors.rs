@@ -45,11 +45,11 @@ fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
 #[test]
 fn a_position_that_is_measured_again_is_no_news() {
     let mut robot = robot();
-    robot.processed_at.renew(robot.revision);
+    robot.changes.settle();
     robot.correct_position(HERE);
-    assert!(!robot.has_news());
+    assert!(!robot.changes.are_news());
     robot.correct_position(east(LITTLE));
-    assert!(robot.has_news());
+    assert!(robot.changes.are_news());
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn a_robot_outside_of_its_constraints_returns_towards_its_goal_or_stays() {
         let mut robot = unsure();
         robot.holds(Post { parent: None, ..primary(30, None, 13) });
         robot.advances_to(goal);
-        robot.roll.called = NOW;
+        robot.membership.is_called_in(NOW);
         robot.body.is_at(Point::new(5.0, CLEARANCE + POSITION_ERROR + MOTION_ERROR - 0.01));
         robot.measures();
         robot.propose().expect("its guards have values");

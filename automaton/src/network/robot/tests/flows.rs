@@ -25,7 +25,7 @@ fn receivers(robot: &Robot) -> Vec<NodeId> {
 #[test]
 fn links_are_found_anew_when_something_has_changed() {
     let mut robot = router();
-    let stand = |robot: &Robot| robot.routing.has_links_of(robot.revision);
+    let stand = |robot: &Robot| robot.routing.has_links_of(robot.changes.revision());
     assert!(stand(&robot));
     robot.hears(beacon(4, east(1.0), fixed(14, 13), &[13, 14]));
     assert!(!stand(&robot));

@@ -35,11 +35,11 @@ fn a_robot_far_away_that_falls_silent_is_out_of_range_after_three_rounds() {
     silent_rounds(&mut robot, 1); // the round in which it was heard
     silent_rounds(&mut robot, ROUNDS_TO_BE_HEARD - 1);
     assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, ROUNDS_TO_BE_HEARD as u8 - 1)]);
-    robot.processed_at.renew(robot.revision);
+    robot.changes.settle();
     silent_rounds(&mut robot, 1);
     assert!(hears(&robot).is_empty());
-    assert!(robot.has_news(), "it is news that a robot is out of range");
-    assert_eq!(robot.out_of_sight.iter().map(|seen| seen.robot).collect::<Vec<_>>(), [1]);
+    assert!(robot.changes.are_news(), "it is news that a robot is out of range");
+    assert_eq!(robot.membership.noted().iter().map(|seen| seen.robot).collect::<Vec<_>>(), [1]);
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn a_robot_that_is_called_gone_stays_in_sight_as_long_as_packets_flow_to_it() {
     robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
     robot.sends(1, 0.1);
     let gone = [1].into_iter().collect();
-    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+    robot.membership.lacks(Absent { gone, ..Absent::default() });
     silent_rounds(&mut robot, 10);
     assert_eq!(hears(&robot), [1]);
     robot.sends(1, 0.0);
@@ -108,9 +108,9 @@ fn silence_is_news_where_it_changes_what_the_robot_knows() {
     robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
     silent_rounds(&mut robot, 1);
     let is_news = |robot: &mut Robot| {
-        robot.processed_at.renew(robot.revision);
+        robot.changes.settle();
         silent_rounds(robot, 1);
-        robot.has_news()
+        robot.changes.are_news()
     };
     assert!(is_news(&mut robot), "it was heard a round ago");
     robot.body.is_at(west(0.1));
@@ -204,10 +204,11 @@ fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_con
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     let is_news = |robot: &mut Robot, period: u32, confirmed: Option<u32>, hint: u32| {
         robot.schedule.is_in(period);
-        robot.processed_at.renew(robot.revision);
-        robot.heard_up_to = hint;
+        robot.changes.settle();
+        robot.neighbours.expect_first();
+        (0..hint).for_each(|_| robot.neighbours.expect_next());
         robot.hear_beacon(period, confirmed, &heard);
-        robot.has_news()
+        robot.changes.are_news()
     };
     assert!(is_news(&mut robot, NOW, None, 0), "the first one");
     for hint in [0, 1] {
@@ -230,7 +231,7 @@ fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_con
 #[test]
 fn a_robot_moves_only_if_it_has_heard_all_that_are_near_in_this_period() {
     let mut robot = robot();
-    robot.roll.called = NOW;
+    robot.membership.is_called_in(NOW);
     let near = watch_radius(&robot);
     assert!(robot.may_leave_place());
     robot.hears(beacon(1, east(near + 0.01), redundant(11, 12), &[]));
@@ -253,7 +254,7 @@ fn a_robot_does_not_go_on_while_it_does_not_hear_its_parent() {
     let held = |post: Post| holding(post, HERE);
     let moves = |duty: Duty, hears_parent: bool| {
         let mut robot = robot();
-        robot.roll.called = NOW;
+        robot.membership.is_called_in(NOW);
         robot.duty = Current::new(duty);
         if hears_parent {
             robot.hears(beacon(1, east(1.1), fixed(11, 12), &[11, 12]));
@@ -346,7 +347,7 @@ fn a_robot_that_joins_late_stays_until_it_is_told_who_is_absent() {
     assert!(may_leave(NOW, NOW + 16));
     let mut robot = robot();
     robot.hear_of_later_period(NOW + 2);
-    assert!(!robot.knows_who_is_absent(), "it has heard nobody when it began again");
+    assert!(!robot.membership.knows_who_is_absent(), "it has heard nobody when it began again");
 }
 
 /// What a robot works out at its post stands from period to period, unless it moves, does not hear somebody, or hears
@@ -361,14 +362,14 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
         robot.parent = robot.tree_parent();
         robot.process_messages().expect("guards have values");
         robot.measures();
-        robot.processed_at.renew(robot.revision);
+        robot.changes.settle();
         robot
     };
     let deliberates = |mut robot: Robot| {
         robot.restart_clock();
         robot.schedule.count_rounds_anew();
         robot.begin_period().expect("guards have values");
-        robot.has_news()
+        robot.changes.are_news()
     };
     assert!(!deliberates(standing()));
     let changes: [fn(&mut Robot); 3] = [
@@ -377,13 +378,13 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
         |robot| {
             let gone = [1].into_iter().collect();
             let absent = Arc::new(Absent { gone, ..Absent::default() });
-            robot.roll = Roll { called: NOW, absent };
+            robot.membership.is_told(Roll { called: NOW, absent });
         },
     ];
     for (number, change) in changes.into_iter().enumerate() {
         let mut robot = standing();
         change(&mut robot);
-        robot.processed_at.renew(robot.revision);
+        robot.changes.settle();
         assert!(deliberates(robot), "{number}");
     }
 }

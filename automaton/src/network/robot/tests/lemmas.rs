@@ -288,8 +288,10 @@ fn robots_move_as_the_lemma_says() {
         }
         let gone: IdSet = (1..4).filter(|&at| known[at - 1] == Known::Gone).collect();
         let suspended: IdSet = is_suspended.then_some(0).into_iter().collect();
-        robot.roll =
-            Roll { called: robot.schedule.period(), absent: Arc::new(Absent { suspended, gone }) };
+        robot.membership.is_told(Roll {
+            called: robot.schedule.period(),
+            absent: Arc::new(Absent { suspended, gone }),
+        });
         let may_leave = !is_suspended && known[..2].iter().all(|it| *it != Known::Silent);
         assert_eq!(robot.may_leave_place(), may_leave, "{known:?}");
         let proposal = proposed(&mut robot);

@@ -13,7 +13,7 @@ pub(super) fn mover() -> Robot {
     let mut robot = robot();
     robot.holds(Post { parent: None, ..primary(30, None, 13) });
     robot.advances_to(east(3.0));
-    robot.roll.called = NOW;
+    robot.membership.is_called_in(NOW);
     robot
 }
 
@@ -39,7 +39,7 @@ fn a_robot_alone_goes_a_step_straight_to_its_goal() {
     robot.advances_to(HERE);
     assert_eq!(proposed(&mut robot), None, "it is there");
     robot.advances_to(east(3.0));
-    robot.roll.called = 0;
+    robot.membership.is_called_in(0);
     assert_eq!(proposed(&mut robot), None, "it may not leave its place");
 }
 
@@ -87,7 +87,7 @@ fn a_link_of_the_tree_ends_a_move_at_its_limit() {
 fn the_holder_of_a_fixed_post_stays_within_reach_of_its_task() {
     let moved = |behind: f64| {
         let mut robot = robot();
-        robot.roll.called = NOW;
+        robot.membership.is_called_in(NOW);
         robot.knows_task(west(behind));
         let place = Post { task: Some(0), ..fixed(20, 13) };
         robot.duty = Current::new(holding(place, east(0.09)));
@@ -150,7 +150,7 @@ fn a_robot_that_hears_all_knows_where_they_are_unless_they_are_ahead() {
     let other = || beacon(5, west(1.0), fixed(13, 14), &[13, 14]);
     robot.hears(other());
     robot.end_round();
-    assert_eq!(robot.heard_all_in, Some(robot.schedule.period()));
+    assert!(robot.neighbours.have_all_been_heard_in(robot.schedule.period()));
     assert!(robot.knows_place_of(5) && !robot.knows_place_of(4));
     robot.hear_beacon(robot.schedule.period() + 1, None, &Arc::new(other()));
     assert!(!robot.knows_place_of(5));
@@ -168,7 +168,7 @@ fn what_arrives_after_the_last_round_is_not_heard_in_the_next_period() {
     robot.schedule.is_in(robot.schedule.period() + 1);
     robot.end_round();
     assert!(!robot.knows_place_of(5));
-    assert_eq!(robot.heard_all_in, None);
+    assert!(!robot.neighbours.have_all_been_heard_in(robot.schedule.period()));
 }
 
 /// Three tenths of its clearance count as standing still.
@@ -267,7 +267,7 @@ fn a_witness_knows_how_far_a_robot_may_have_gone() {
         let mut outputs = Outputs::of(0);
         robot.judge_moves(&mut outputs);
         let consents = matches!(sent(&mut outputs)[..], [Message::Consent { period: NOW }]);
-        let known = robot.out_of_sight.iter().next().expect("it is noted");
+        let known = robot.membership.noted()[0];
         assert_eq!((known.robot, known.place, known.heard_in), (5, from, NOW));
         assert!((known.astray - 0.06).abs() < 1e-12, "{known:?}");
         consents
@@ -282,12 +282,12 @@ fn a_witness_knows_how_far_a_robot_may_have_gone() {
 fn a_move_that_is_over_is_forgotten() {
     let mut robot = robot();
     let gone = [5].into_iter().collect();
-    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+    robot.membership.lacks(Absent { gone, ..Absent::default() });
     let known = |robot: &mut Robot| {
         let neighbours = std::mem::take(&mut robot.neighbours);
         neighbours.iter().for_each(|lost| robot.lose_sight_of(lost));
         robot.locate_wrecks();
-        robot.wrecks[0]
+        robot.membership.wrecks()[0]
     };
     robot.hears(beacon(5, west(1.0), redundant(13, 14), &[13, 14]));
     let segment = Segment { from: west(1.0), to: west(0.95) };
@@ -454,8 +454,8 @@ fn a_robot_gives_its_move_up_at_the_last_chance() {
 fn a_robot_that_may_not_be_heard_stays_within_two_steps_of_where_it_has_been() {
     let ahead = |gone: f64, roll: u32| {
         let mut robot = mover();
-        robot.roll.called = NOW - 3;
-        robot.trail = vec![(NOW - 2, west(gone))];
+        robot.membership.is_called_in(NOW - 3);
+        robot.membership.set_off(NOW - 2, west(gone));
         robot.hear_roll(&Roll { called: roll, ..Roll::default() });
         proposed(&mut robot).map(|segment| (segment.to - HERE).x)
     };
@@ -470,5 +470,5 @@ fn a_robot_that_may_not_be_heard_stays_within_two_steps_of_where_it_has_been() {
     let mut robot = mover();
     proposed(&mut robot).expect("nothing is in its way");
     robot.set_off();
-    assert_eq!(robot.trail, [(NOW, HERE)]);
+    assert_eq!(robot.membership.trail().collect::<Vec<_>>(), [HERE]);
 }

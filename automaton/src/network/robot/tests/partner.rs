@@ -57,7 +57,7 @@ fn a_robot_that_does_not_take_part_is_no_partner() {
     ];
     let found = absent.map(|absent| {
         let mut robot = stuck(5);
-        robot.roll.absent = Arc::new(absent);
+        robot.membership.lacks(absent);
         robot.hears(parked(BESIDE));
         partner(&mut robot)
     });
@@ -249,7 +249,7 @@ fn no_partner_is_taken_if_a_robot_beside_the_parent_would_be_out_of_reach() {
     assert_eq!(with(apart - LITTLE, other), None);
     let mut robot = beside_parent(0.1 + LITTLE, other);
     let absent = Absent { suspended: [3].into_iter().collect(), ..Absent::default() };
-    robot.roll.absent = Arc::new(absent);
+    robot.membership.lacks(absent);
     assert_eq!(partner(&mut robot), Some(1), "it takes no part");
 }
 

@@ -94,8 +94,8 @@ fn a_task_is_serviced_beside_a_robot_that_has_stopped_there() {
         let mut robot = leader();
         robot.knows_task(east(3.0));
         let gone = [1].into_iter().collect();
-        robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
-        robot.wrecks = Arc::new(vec![Wreck::heard(1, east(3.0 + away), NOW - 9)]);
+        robot.membership.lacks(Absent { gone, ..Absent::default() });
+        robot.membership.finds(vec![Wreck::heard(1, east(3.0 + away), NOW - 9)]);
         robot.team_goal().expect("it leads")
     };
     let kept = 2.1 * CLEARANCE + STEP;

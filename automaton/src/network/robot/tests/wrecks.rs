@@ -8,8 +8,8 @@ use crate::network::roll::{Absent, Wreck};
 fn beside_wreck(away: f64) -> Robot {
     let mut robot = robot();
     let gone = [1].into_iter().collect();
-    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
-    robot.wrecks = Arc::new(vec![Wreck::heard(1, east(away), NOW - 9)]);
+    robot.membership.lacks(Absent { gone, ..Absent::default() });
+    robot.membership.finds(vec![Wreck::heard(1, east(away), NOW - 9)]);
     robot
 }
 
@@ -70,10 +70,10 @@ fn a_robot_beside_a_wreck_goes_away_from_wherever_that_may_be() {
 fn how_far_a_wreck_may_be_from_where_it_was_heard() {
     let radius = |astray: f64, other: Option<f64>| {
         let mut robot = beside_wreck(0.6);
-        let known = robot.wrecks[0];
+        let known = robot.membership.wrecks()[0];
         let other = other.map(|away| Wreck::heard(2, east(0.6 + away), NOW - 9));
         let wrecks = [Wreck { astray, ..known }].into_iter().chain(other);
-        robot.wrecks = Arc::new(wrecks.collect());
+        robot.membership.finds(wrecks.collect());
         robot.keep_out_discs(0.0).next().expect("it is in the way").radius
     };
     let close = |one: f64, other: f64| assert!((one - other).abs() < 1e-12, "{one} is not {other}");
@@ -85,7 +85,7 @@ fn how_far_a_wreck_may_be_from_where_it_was_heard() {
     close(radius(0.0, Some(earshot + LITTLE)), STEP);
     let mut suspended = beside_wreck(0.6);
     let robots = [1].into_iter().collect();
-    suspended.roll.absent = Arc::new(Absent { suspended: robots, ..Absent::default() });
+    suspended.membership.lacks(Absent { suspended: robots, ..Absent::default() });
     let disc = suspended.keep_out_discs(0.0).next().expect("it is in the way");
     close(disc.radius, 2.0 * STEP);
 }
@@ -108,13 +108,13 @@ fn where_branches_are_is_known_two_links_away() {
     let told = Beacon { branches: told, ..beacon(5, east(0.5), fixed(20, 99), &[]) };
     robot.hears(told);
     let gone = [3, 5].into_iter().collect();
-    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+    robot.membership.lacks(Absent { gone, ..Absent::default() });
     robot.neighbours = Neighbours::default();
     robot.locate_wrecks();
     let start = robot.site.start_of(5).expect("there is such a robot");
     let (branch, unheard) = (Wreck::heard(3, east(1.5), NOW - 2), Wreck::heard(5, start, 0));
     // Where branches are may be old news: perhaps from before their last move.
-    assert_eq!(*robot.wrecks, [branch, unheard]);
+    assert_eq!(**robot.membership.wrecks(), [branch, unheard]);
 }
 
 #[test]
@@ -132,8 +132,9 @@ fn a_wreck_that_is_heard_is_a_robot_like_any_other() {
 fn a_robot_that_an_error_has_led_too_far_stays() {
     let may_move = |gone: f64| {
         let mut robot = robot();
-        robot.roll.called = NOW;
-        robot.trail = vec![(NOW, HERE), (NOW, west(gone))];
+        robot.membership.is_called_in(NOW);
+        robot.membership.set_off(NOW, HERE);
+        robot.membership.set_off(NOW, west(gone));
         robot.may_leave_place()
     };
     assert!(may_move(2.0 * STEP) && !may_move(2.0 * STEP + LITTLE));

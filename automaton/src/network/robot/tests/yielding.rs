@@ -203,9 +203,9 @@ fn who_gives_up_stepping_aside_asks_for_no_way() {
     robot.process_messages().expect("guards have values");
     robot.jump().expect("guards have values");
     robot.neighbours.iter_mut().for_each(|known| known.heard_in = NOW);
-    robot.heard_all_in = Some(NOW);
+    robot.neighbours.note_round(Some(NOW));
     assert!(robot.next_beacon().way.is_some());
-    robot.processed_at.renew(robot.revision);
+    robot.changes.settle();
     robot.propose().expect("guards have values");
     robot.set_off();
     robot.restart_clock();
