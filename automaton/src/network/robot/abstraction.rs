@@ -92,18 +92,18 @@ impl<'a> RobotView<'a> {
 
     /// The election that it knows to be over, and the winner with its bid.
     pub fn concluded_election(self) -> Option<(NoticeId, Option<(Bid, NodeId)>)> {
-        let election = self.robot().election.as_ref()?;
+        let election = self.robot().ballot.election()?;
         self.robot().election_is_over().then(|| (election.id(), election.best()))
     }
 
     /// The election that it takes part in, or took part in last.
     pub fn election(self) -> Option<NoticeId> {
-        self.robot().election.as_ref().map(|election| election.id())
+        self.robot().ballot.election().map(|election| election.id())
     }
 
     /// What it has bid itself in this election, if it has taken part in it and in none since.
     pub fn own_bid(self, election: NoticeId) -> Option<Bid> {
-        self.robot().bid.filter(|_| self.election() == Some(election))
+        self.robot().ballot.bid().filter(|_| self.election() == Some(election))
     }
 
     /// The number of control periods without progress.
@@ -179,7 +179,7 @@ impl Robot {
     ) -> Result<(), RobotError> {
         self.schedule.take_new();
         self.schedule.join(self.schedule.period() + u32::from(is_next));
-        self.posts_made = 0;
+        self.duty.begin_period();
         let numbers = Numbers { now: self.schedule.period(), passed: u32::from(!is_next) };
         let validity = self.site.roll_validity();
         self.membership.renumber(|called| numbers.of(called, validity + 1));
@@ -207,7 +207,7 @@ impl Robot {
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
         let told = (self.schedule.period(), self.membership.roll(), self.confirmation, reports);
-        let waits = (self.orphaned_periods, self.is_late, self.schedule.waits());
+        let waits = (self.orphaned_periods, self.duty.is_late(), self.schedule.waits());
         let mut account = self.account();
         account.extend([format!("{told:?}"), format!("{waits:?}{seen:?}{heard:?}")]);
         account
@@ -227,9 +227,7 @@ impl Robot {
             body,
             duty,
             mission,
-            exchange,
-            past_offers: _, // by those since the mission last made progress
-            answered,
+            exchanges,
             parent,
             place,
             below,
@@ -239,18 +237,12 @@ impl Robot {
             epoch,
             announced,
             accomplished: _, // told, as far as it decides anything
-            election,
-            bid,
-            waited_rounds,
-            route,
-            agreement,
+            ballot,
             team,
             led_from,
             stretched,
             longest_wait: _, // told, with its own depth
-            followed_post,
             closed,
-            posts_made,
             neighbours: _, // by their beacons and their silence
             // Constant.
             rate: _,
@@ -262,17 +254,12 @@ impl Robot {
             membership: _,
             heard_way: _,
             is_displaced: _,
-            is_late: _,
-            label: _,
             facts: _,
-            forgotten_offers: _, // by its offers
             desired_parent: _,
             reattaches_to: _,
             // The explorer confirms every way.
             confirmation: _,
             awaits_confirmation: _,
-            partner: _,
-            taking_over: _,
             // No robot is missed, and no task, where no time passes; and none restarts.
             forgetful: _,
             strays: _,
@@ -289,7 +276,7 @@ impl Robot {
         } = self;
         let has_reached = self.has_reached_task();
         let waited = match self.counts_rounds() {
-            true => (*waited_rounds).min(2 * self.longest_wait() + 1),
+            true => ballot.waited_rounds().min(2 * self.longest_wait() + 1),
             false => 0,
         };
         let silences: Vec<u8> = self.audible().map(|(_, silent)| silent).collect();
@@ -299,11 +286,26 @@ impl Robot {
                 "{:?}",
                 (id, body.position(), body.still_periods(), parent, &**place, can_detach, silences)
             ),
-            format!("{:?}", (&**duty, posts_made, unused_periods, followed_post, below, closed)),
-            format!("{:?}", (&**mission, election, bid, waited, agreement, team, stretched, wait)),
+            format!(
+                "{:?}",
+                (&**duty, duty.posts_made(), unused_periods, team.followed_post(), below, closed)
+            ),
+            format!(
+                "{:?}",
+                (
+                    &**mission,
+                    ballot.election(),
+                    ballot.bid(),
+                    waited,
+                    ballot.agreement(),
+                    team.report(),
+                    stretched,
+                    wait
+                )
+            ),
             format!("{led_from:?}"),
-            format!("{:?}", (&**exchange, answered, self.past_offers())),
-            format!("{:?}", (bulletin, epoch, announced, has_reached, route)),
+            format!("{} {:?}", exchanges.account(), self.past_offers()),
+            format!("{:?}", (bulletin, epoch, announced, has_reached, ballot.route())),
         ]
     }
 }

@@ -60,22 +60,24 @@ impl Holds<Duty> for Robot {
     type Effects = Effects;
 
     fn current(&self) -> &Current<Duty> {
-        &self.duty
+        self.duty.current()
     }
 
     fn current_mut(&mut self) -> &mut Current<Duty> {
-        &mut self.duty
+        self.duty.current_mut()
     }
 
     fn carry_out(&mut self, effects: Effects) {
         (self.desired_parent, self.reattaches_to) = (None, None);
-        (self.unused_periods, self.is_late) = (0, false);
+        self.unused_periods = 0;
+        self.duty.has_jumped();
         for effect in effects {
             match effect {
                 DutyEffect::Report(event) => self.report(event),
                 DutyEffect::Restart => self.body.count_still_periods_anew(),
                 DutyEffect::Exchanged(partner) => {
-                    self.remember_partner(partner);
+                    let progress = self.progress();
+                    self.exchanges.conclude(partner, progress);
                     self.is_displaced = true;
                 }
             }
@@ -90,10 +92,10 @@ impl Robot {
         label: Label,
     ) -> Result<Option<Jump<Activity, DutyEvent>>, TransitionError> {
         let site = Arc::clone(&self.site);
-        self.label = label;
+        self.duty.jump_with(label);
         let held = self.duty.post().map(|post| post.id);
         let jump = site.automata.duty.step_in_place::<Duty>(self);
-        self.label = Label::Alone;
+        self.duty.jump_with(Label::Alone);
         if matches!(jump, Ok(Some(_))) {
             self.changes.allow_jump();
             self.note_change();
@@ -103,7 +105,7 @@ impl Robot {
                 self.confirmation.take_over(period);
             }
             if self.duty.post().is_some_and(|post| post.id == self.new_post().id) {
-                self.posts_made += 1;
+                self.duty.make_posts(1);
             }
             self.look_after_place()?;
         }
@@ -143,12 +145,12 @@ impl Robot {
     // ---- What the guards ask -------------------------------------------------------------------
 
     pub(super) fn takes_step(&self, step: MissionStep) -> bool {
-        self.label == Label::Mission(step)
+        self.duty.label() == Label::Mission(step)
     }
 
     /// Whether it takes over a duty of this kind.
     pub(super) fn takes_over(&self, activity: Activity) -> bool {
-        matches!(self.label, Label::Exchange(duty, _) if duty.location() == activity)
+        matches!(self.duty.label(), Label::Exchange(duty, _) if duty.location() == activity)
     }
 
     /// Whether it has won the leader election that is over now.
@@ -182,7 +184,7 @@ impl Robot {
 
     fn coming_place(&self) -> Option<usize> {
         let own = self.duty.post()?.id;
-        match self.label {
+        match self.duty.label() {
             Label::Mission(MissionStep::Recruited) => Some(0),
             Label::Mission(MissionStep::PathHeard) => {
                 let Notice::Path(path) = self.notice() else { return None };
@@ -308,7 +310,7 @@ impl Robot {
 
     /// Whether it joins a mission under way: its first post may be that of another robot by now.
     pub(super) fn joins_late(&self) -> bool {
-        self.label == Label::Alone && self.is_late
+        self.duty.label() == Label::Alone && self.duty.is_late()
     }
 
     /// Whether it waits on Σ, and has given its post up to the robot behind.
@@ -496,7 +498,7 @@ fn attach<A: Holder + From<Held>>(duty: &A, robot: &Robot, effects: &mut Effects
 
 /// The duty of the partner of an exchange.
 fn take_over<A, B: DataOf<Duty> + Copy>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<B> {
-    let Label::Exchange(duty, partner) = robot.label else { return None };
+    let Label::Exchange(duty, partner) = robot.duty.label() else { return None };
     let left = robot.duty.post().map(|post| post.id);
     effects.extend([DutyEffect::Exchanged(partner), DutyEffect::Restart]);
     B::of(&duty.taken_over(left)).copied()

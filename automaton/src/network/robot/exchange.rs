@@ -12,7 +12,6 @@ use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
 use super::Robot;
-use super::partner::Answered;
 use crate::network::duty::Duty;
 use crate::network::record::MissionEvent;
 
@@ -92,40 +91,23 @@ impl Holds<Exchange> for Robot {
     type Effects = Effects;
 
     fn current(&self) -> &Current<Exchange> {
-        &self.exchange
+        self.exchanges.current()
     }
 
     fn current_mut(&mut self) -> &mut Current<Exchange> {
-        &mut self.exchange
+        self.exchanges.current_mut()
     }
 
     fn carry_out(&mut self, effects: Effects) {
-        for effect in effects {
-            match effect {
-                ExchangeEffect::Answered(mover, number) => {
-                    self.answered.insert(mover, Answered { number, in_vain: false });
-                }
-                ExchangeEffect::RefusedInVain(mover) => {
-                    if let Some(answered) = self.answered.get_mut(&mover) {
-                        answered.in_vain = true;
-                    }
-                }
-                ExchangeEffect::Refused(partner) => self.remember_refusal(partner),
-                ExchangeEffect::PartnerAsked => self.partner = None,
-                ExchangeEffect::Takes(duty, partner) => {
-                    // Whom it had chosen could replace it in the duty that it gives away.
-                    self.partner = None;
-                    self.taking_over = Some((duty, partner));
-                }
-            }
-        }
+        let progress = self.progress();
+        effects.into_iter().for_each(|effect| self.exchanges.carry_out(effect, progress));
     }
 }
 
 impl Robot {
     /// Its offers and replies.
     pub(super) fn offers(&self) -> &Offers<Duty> {
-        self.exchange.offers()
+        self.exchanges.offers()
     }
 
     /// Takes all transitions of the exchange of duties that can be taken, together with the duty
@@ -138,7 +120,7 @@ impl Robot {
             if jump.event == ExchangeEvent::PartnerLost {
                 self.begin_again()?;
             }
-            if let Some((duty, partner)) = self.taking_over.take() {
+            if let Some((duty, partner)) = self.exchanges.take_duty() {
                 self.exchange_duty(duty, partner)?;
                 if jump.event == ExchangeEvent::DutyTaken {
                     let event = MissionEvent::DutiesExchanged { mover: self.id, parked: partner };
@@ -154,7 +136,7 @@ impl Robot {
 
 fn offer(free: &Free, robot: &Robot, effects: &mut Effects) -> Option<Offering> {
     let mut offers = free.0.clone();
-    offers.make_offer(robot.partner?, *robot.duty);
+    offers.make_offer(robot.exchanges.partner()?, *robot.duty);
     effects.push(ExchangeEffect::PartnerAsked);
     Some(Offering(offers))
 }
@@ -174,7 +156,7 @@ fn answer<A: HasOffers, B: From<Offers<Duty>>>(
 
 /// Its next offer is newer than any that it may have made before.
 fn count_on(_: &Free, robot: &Robot, _: &mut Effects) -> Free {
-    Free(Offers::numbered_after(robot.forgotten_offers))
+    Free(Offers::numbered_after(robot.exchanges.forgotten_offers()))
 }
 
 fn give(free: &Free, robot: &Robot, effects: &mut Effects) -> Option<Giving> {
@@ -415,7 +397,7 @@ mod tests {
         let mut robot = robot();
         let mut posts = BTreeSet::new();
         for made in 1..=3 {
-            robot.is_late = true;
+            robot.duty.join_late();
             robot.changes.allow_jump();
             robot.note_change();
             robot.jump().expect("guards have values");
@@ -432,19 +414,19 @@ mod tests {
         let mut mover = other();
         offer_duty(&mut mover);
         hear(&mut robot, &mover);
-        assert_eq!(robot.exchange.location(), ExchangeStage::Refusing);
+        assert_eq!(robot.exchanges.current().location(), ExchangeStage::Refusing);
         assert_eq!(robot.offers().reply().map(|reply| reply.accepted), Some(None));
 
         mover.bulletin = mover.bulletin.next(2, Shared::new(Notice::Task(task())));
         hear(&mut robot, &mover);
         assert_eq!(
-            (robot.exchange.location(), robot.phase()),
+            (robot.exchanges.current().location(), robot.phase()),
             (ExchangeStage::Refusing, Phase::Idle)
         );
 
         mover.offer = None;
         hear(&mut robot, &mover);
-        assert_eq!(robot.exchange.location(), ExchangeStage::Free);
+        assert_eq!(robot.exchanges.current().location(), ExchangeStage::Free);
         assert_eq!(robot.phase(), Phase::LeaderElection);
     }
 
@@ -466,7 +448,7 @@ mod tests {
             let mut robot = robot();
             let mut offers = Offers::new();
             offers.make_offer(1, *robot.duty);
-            robot.exchange = Current::new(Exchange::Offering(Offering(offers)));
+            robot.exchanges.is_at(Exchange::Offering(Offering(offers)));
             let before = robot.duty.post().expect("it stands by").id;
             begins_a_period(&mut robot, is_gone);
             assert_eq!(robot.is_engaged(), !is_gone);
@@ -486,10 +468,11 @@ mod tests {
     #[test]
     fn a_robot_that_takes_a_duty_over_has_no_partner_for_it_yet() {
         let mut robot = robot();
-        robot.partner = Some(1);
+        robot.exchanges.choose_partner(Some(1));
         let duty = *robot.duty;
         Holds::<Exchange>::carry_out(&mut robot, vec![ExchangeEffect::Takes(duty, 1)]);
-        assert_eq!((robot.partner, robot.taking_over), (None, Some((duty, 1))));
+        assert_eq!(robot.exchanges.partner(), None);
+        assert_eq!(robot.exchanges.take_duty(), Some((duty, 1)));
     }
 
     /// A refusal that nobody can hear is withdrawn, so that the robot can take part in other exchanges. The mover
@@ -504,9 +487,9 @@ mod tests {
                 offer_duty(&mut mover);
                 hear(&mut robot, &mover);
                 begins_a_period(&mut robot, false);
-                assert_eq!(robot.exchange.location(), ExchangeStage::Refusing);
+                assert_eq!(robot.exchanges.current().location(), ExchangeStage::Refusing);
                 begins_a_period(&mut robot, true);
-                assert_eq!(robot.exchange.location(), ExchangeStage::Free);
+                assert_eq!(robot.exchanges.current().location(), ExchangeStage::Free);
                 assert!(robot.offers().reply().is_none() && !robot.is_engaged());
             }
             robot.membership.is_told(Roll::default());
@@ -528,9 +511,9 @@ mod tests {
         offers.make_offer(2, *robot.duty);
         let refused = Offer { to: 0, number: 1, duty: *robot.duty };
         offers.answer(1, &refused, None);
-        robot.exchange = Current::new(Exchange::OfferingAndRefusing(OfferingAndRefusing(offers)));
+        robot.exchanges.is_at(Exchange::OfferingAndRefusing(OfferingAndRefusing(offers)));
         begins_a_period(&mut robot, true);
-        assert_eq!(robot.exchange.location(), ExchangeStage::Offering);
+        assert_eq!(robot.exchanges.current().location(), ExchangeStage::Offering);
         assert!(robot.offers().offer().is_some() && robot.offers().reply().is_none());
     }
 }

@@ -181,7 +181,7 @@ facts! {
             /// It holds a fixed post, or robots attached to it find no other parent.
             has_past_duties: robot.has_past_duties(),
             /// It may have made more offers to exchange duties, before it began, than it counts.
-            has_forgotten_offers: robot.forgotten_offers > robot.offers().offers_made(),
+            has_forgotten_offers: robot.exchanges.forgotten_offers() > robot.offers().offers_made(),
             /// The leader election is over now, and it has won it.
             wins: robot.wins_now(),
             /// It learns in this jump that Σ passes its post.
@@ -201,7 +201,7 @@ facts! {
             /// A task is serviced from the post that it takes on Σ.
             ahead_serves: robot.coming_post().is_some_and(|post| post.task.is_some()),
             /// A robot in its way is a partner for an exchange of duties.
-            finds_partner: robot.partner.is_some(),
+            finds_partner: robot.exchanges.partner().is_some(),
             /// The partner has answered its offer.
             offer_answered: robot.answer_to_offer().is_some(),
             /// The partner has accepted its offer.
@@ -315,7 +315,7 @@ impl Robot {
             ..Facts::default()
         };
         self.measure_notice(&mut facts);
-        let best = self.election.as_ref().and_then(|election| election.best());
+        let best = self.ballot.best();
         let won = best.is_some_and(|(bid, robot)| robot == self.id && Robot::can_come(bid))
             && self.knows_route();
         let over = self.election_is_over();
@@ -348,8 +348,8 @@ impl Robot {
     /// What the newest notice asks of this robot.
     fn measure_notice(&self, facts: &mut Facts) {
         let id = self.bulletin.id();
-        let election = self.election.as_ref().map(|election| election.id());
-        let path = self.agreement.as_ref().map(|agreement| agreement.id());
+        let election = self.ballot.election().map(|election| election.id());
+        let path = self.ballot.agreement().map(|agreement| agreement.id());
         // One that pursues no task has none to give up.
         let is_overtaken = id.epoch() > self.epoch && self.phase() != Phase::Idle;
         match self.notice() {
@@ -388,7 +388,8 @@ impl Robot {
     /// was announced cannot tell before it knows the roster; and the roster of a task that is announced again
     /// is not that of the elections before.
     pub(super) fn election_is_over(&self) -> bool {
-        let (Some(election), Some((id, announcement))) = (&self.election, &self.announced) else {
+        let (Some(election), Some((id, announcement))) = (self.ballot.election(), &self.announced)
+        else {
             return false;
         };
         let roster = &announcement.roster;
@@ -424,7 +425,7 @@ impl Robot {
     }
 
     fn measure_team(&self, facts: &mut Facts) {
-        if let Some(team) = self.team {
+        if let Some(team) = self.team.report() {
             facts.still = f64::from(team.still);
             facts.slack = team.slack.is_some();
         }
@@ -434,7 +435,7 @@ impl Robot {
             // A robot that has joined from afar hears nothing of the team until it is there; if it
             // never arrives, no other robot notices. Nor does one where the leader has been cut off, and is
             // attached elsewhere by now.
-            facts.stalled = match self.team {
+            facts.stalled = match self.team.report() {
                 Some(_) if facts.slack || facts.pending => facts.still,
                 Some(_) => 0.0,
                 None => f64::from(self.body.still_periods()),

@@ -1,7 +1,5 @@
 //! The election of a leader (Algorithm 1, Remark 5.3).
 
-use std::sync::Arc;
-
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId, Phase, Post};
 
@@ -97,10 +95,10 @@ impl Robot {
     /// an access point looks for one first.
     pub(super) fn answer_announcement(&mut self) {
         let id = self.notice_id();
-        let is_answered = |election: &Election| election.id() != id || election.has_token(self.id);
-        let has_time = self.waited_rounds < 2 * self.longest_wait();
+        let is_open = self.ballot.is_of(id) && !self.ballot.has_token(self.id);
+        let has_time = !self.ballot.has_waited_for(2 * self.longest_wait());
         let way = self.lineage().filter(|_| !self.is_orphan());
-        if self.election.as_deref().is_none_or(is_answered) || way.is_none() && has_time {
+        if !is_open || way.is_none() && has_time {
             return;
         }
         let bid = self.announcement().zip(way).and_then(|(announcement, way)| {
@@ -109,17 +107,7 @@ impl Robot {
                 announcement.roster.contains(self.id) && announcement.eligible.contains(root);
             competes.then(|| self.leader_bid(announcement, root)).flatten()
         });
-        self.place_token(bid);
-    }
-
-    /// Answers the election under way, once.
-    pub(super) fn place_token(&mut self, bid: Option<Bid>) {
-        if let Some(election) = &mut self.election
-            && !election.has_token(self.id)
-        {
-            Arc::make_mut(election).place(self.id, bid);
-            self.bid = bid;
-        }
+        self.ballot.place(self.id, bid);
     }
 
     /// The nearer to the task along the geodesic, the better; ties go to the tree of the first access point. None if
@@ -208,12 +196,12 @@ impl Robot {
     /// The access point in whose tree the winner of the leader election is that this robot takes part in; none where
     /// there is one access point.
     fn root_of_winner(&self) -> Option<usize> {
-        let best = self.election.as_ref()?.best().filter(|_| self.site.access_points.len() > 1);
+        let best = self.ballot.best().filter(|_| self.site.access_points.len() > 1);
         best.map(|(bid, _)| tree_of(bid))
     }
 
     /// The winner of the election that this robot takes part in, as far as it knows.
     pub(super) fn winner(&self) -> Option<NodeId> {
-        self.election.as_ref()?.best().map(|(_, robot)| robot)
+        self.ballot.best().map(|(_, robot)| robot)
     }
 }

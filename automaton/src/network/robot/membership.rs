@@ -204,7 +204,11 @@ mod tests {
         membership.miss(Wreck::heard(1, at(1.0), 25 - TOLD_AFTER));
         membership.miss(Wreck::heard(2, at(2.0), 25));
         assert!(!membership.receive_roll(&roll(25, &[])), "nobody else is absent");
-        assert_eq!(membership.trail().collect::<Vec<_>>(), [at(0.1)], "24 is the last of its place");
+        assert_eq!(
+            membership.trail().collect::<Vec<_>>(),
+            [at(0.1)],
+            "24 is the last of its place"
+        );
         assert_eq!(membership.missing().map(|lost| lost.robot).collect::<Vec<_>>(), [2]);
         assert!(!membership.receive_roll(&roll(24, &[1])), "it is older");
         membership.find(2);

@@ -23,7 +23,7 @@ use crate::network::mission::{
     Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
 use crate::network::record::MissionEvent;
-use crate::network::shared::{Shared, merge_election};
+use crate::network::shared::Shared;
 
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
@@ -91,12 +91,11 @@ impl Holds<Mission> for Robot {
                 }
                 MissionEffect::Forgotten => self.forgetful = Arc::new(IdSet::singleton(self.id)),
                 MissionEffect::Elect(election, route) => {
-                    (self.election, self.bid, self.route) = (Some(Arc::new(election)), None, route);
-                    self.waited_rounds = 1;
+                    self.ballot.begin(election, route);
                     self.answer_election();
                 }
-                MissionEffect::ForgetRoute => self.route = None,
-                MissionEffect::Agree(agreement) => self.agreement = agreement,
+                MissionEffect::ForgetRoute => self.ballot.set_route(None),
+                MissionEffect::Agree(agreement) => self.ballot.agree(agreement),
                 MissionEffect::KeepUp => self.epoch = self.notice_id().epoch(),
                 MissionEffect::Restart => self.body.count_still_periods_anew(),
                 MissionEffect::Stretch => self.stretched = true,
@@ -131,12 +130,7 @@ impl Robot {
             self.longest_wait = self.site.longer_wait(self.longest_wait, told);
             self.stretched |= neighbour.beacon.stretched;
             self.bulletin.merge(&neighbour.beacon.bulletin);
-            if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
-                merge_election(own, heard);
-            }
-            if let (Some(own), Some(heard)) = (&mut self.agreement, &neighbour.beacon.agreement) {
-                own.merge(heard);
-            }
+            self.ballot.merge(&neighbour.beacon);
             neighbour.beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
             neighbour.beacon.tell_closed(&mut self.closed);
         }

@@ -16,13 +16,16 @@ mod absence;
 #[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
+mod ballot;
 mod bodies;
 mod body;
 mod confirmation;
 mod context;
 mod control;
 mod duties;
+mod duty_cell;
 mod exchange;
+mod exchanges;
 mod facts;
 mod hearing;
 mod judging;
@@ -55,14 +58,10 @@ mod view;
 mod way;
 mod yielding;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Confirmation, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId,
-    Role,
-};
+use pleach_discrete::network::{Anchor, Confirmation, IdSet, NodeId, NoticeId, Post, PostId, Role};
 
 #[cfg(feature = "abstraction")]
 pub(super) use abstraction::Numbers;
@@ -83,9 +82,7 @@ pub use view::RobotView;
 use crate::automaton::TransitionError;
 use crate::located::Current;
 
-use super::beacon::{
-    Announced, Announcement, Beacon, Branch, Bulletin, CallRoute, Notice, TeamReport,
-};
+use super::beacon::{Announced, Announcement, Beacon, Branch, Bulletin, Notice};
 use super::duty::{Duty, Held, Standby, Station};
 use super::member::NodeOutputs;
 use super::message::Message;
@@ -94,10 +91,13 @@ use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
+use ballot::Ballot;
 use bodies::Bodies;
 use body::Body;
 use context::context;
 use duties::Label;
+use duty_cell::DutyCell;
+use exchanges::Exchanges;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
@@ -106,12 +106,12 @@ use navigation::Navigation;
 use negotiation::Negotiation;
 use neighbours::Neighbours;
 use outbox::Outbox;
-use partner::{Answered, PastOffers};
 use places::places;
 use reservation::{Plan, Reservation, lease_of};
 use revision::Changes;
 use routing::{Receiver, Routing, Survey};
 use schedule::Schedule;
+use team::Team;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
 const FIRST_NEW_POST: u32 = 1 << 31;
@@ -148,24 +148,11 @@ pub struct Robot {
     branches: Arc<Vec<Branch>>,
 
     // Where it is in its automata, and what the duty automaton jumps together with.
-    duty: Current<Duty>,
-    label: Label,
-    /// How many posts it has made in this control period.
-    posts_made: u32,
+    duty: DutyCell,
     mission: Current<Mission>,
     facts: Facts,
 
-    // The exchange of duties that it is engaged in.
-    exchange: Current<Exchange>,
-    /// How many offers it may have made before it began: at most one in each control period.
-    forgotten_offers: u32,
-    /// The robot in its way with which it could exchange duties.
-    partner: Option<NodeId>,
-    /// The duty that it takes over in this jump, and from which robot.
-    taking_over: Option<(Duty, NodeId)>,
-    past_offers: Option<PastOffers>,
-    /// The offer answered last, by the robot that made it.
-    answered: BTreeMap<NodeId, Answered>,
+    exchanges: Exchanges,
 
     // Its place in the tree.
     parent: Option<NodeId>,
@@ -186,8 +173,6 @@ pub struct Robot {
     confirmation: Confirmation,
     can_detach: bool,
     unused_periods: u32,
-    /// It has joined a mission under way, and not taken a new post yet.
-    is_late: bool,
     orphaned_periods: u32,
 
     // What it knows of the mission.
@@ -202,21 +187,14 @@ pub struct Robot {
     /// Where the leader goes: the point of 𝒲_f nearest to the task announced of those to which a way leads from where
     /// the robot has learnt of it.
     target: Option<Point>,
-    election: Option<Arc<Election>>,
-    /// What it has bid in this election itself.
-    bid: Option<Bid>,
-    waited_rounds: usize,
-    route: Option<CallRoute>,
-    agreement: Option<Agreement>,
-    team: Option<TeamReport>,
+    ballot: Ballot,
+    team: Team,
     /// The access point in whose tree the leader of its team was elected, if there are several.
     led_from: Option<usize>,
     /// Whether a team has found no robot that can be recruited.
     stretched: bool,
     /// For how many rounds news may be under way, as far as it has heard.
     longest_wait: usize,
-    /// Its own post, if another robot of the primary team follows it.
-    followed_post: Option<PostId>,
 
     // Motion.
     navigation: Navigation,
@@ -238,17 +216,10 @@ impl Robot {
             outbox: Outbox::default(),
             membership: Membership::default(),
             body: Body::at(position, site.settings.period),
-            duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
-            label: Label::Alone,
-            posts_made: 0,
+            duty: DutyCell::new(Duty::Standby(Standby(Held { station, left: None }))),
             mission: Current::new(Mission::Idle(Idle)),
             facts: Facts::default(),
-            exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
-            forgotten_offers: 0,
-            partner: None,
-            taking_over: None,
-            past_offers: None,
-            answered: BTreeMap::new(),
+            exchanges: Exchanges::default(),
             neighbours: Neighbours::default(),
             branches: Arc::default(),
             parent: None,
@@ -265,7 +236,6 @@ impl Robot {
             awaits_confirmation: false,
             can_detach: false,
             unused_periods: 0,
-            is_late: false,
             orphaned_periods: 0,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             epoch: 0,
@@ -273,16 +243,11 @@ impl Robot {
             accomplished: None,
             forgetful: Arc::default(),
             target: None,
-            election: None,
-            bid: None,
-            waited_rounds: 0,
-            route: None,
-            agreement: None,
-            team: None,
+            ballot: Ballot::default(),
+            team: Team::default(),
             led_from: None,
             stretched: false,
             longest_wait: 0,
-            followed_post: None,
             routing: Routing::new(site.settings.routing_method),
             reservation: Reservation::default(),
             navigation: Navigation::default(),
@@ -301,7 +266,7 @@ impl Robot {
 
     /// It begins later than others. If it has begun before, it has made at most an offer in each period.
     fn begin_late(&mut self, period: u32) {
-        self.forgotten_offers = if period > 1 { period } else { 0 };
+        self.exchanges.forget_offers(if period > 1 { period } else { 0 });
         self.join_in(period);
     }
 
@@ -312,11 +277,11 @@ impl Robot {
         let (site, place) = (Arc::clone(&self.site), self.body.position());
         let fresh = Robot::new(self.id, place, self.rate, site);
         let known = std::mem::replace(self, fresh);
-        self.forgotten_offers = known.offers().offers_made();
+        self.exchanges = Exchanges::after(known.offers().offers_made());
         let period = known.schedule.period();
         self.schedule = known.schedule.begun_again();
         self.body = Body::at(known.body.position(), known.body.clock());
-        self.posts_made = known.posts_made;
+        self.duty.make_posts(known.duty.posts_made());
         self.membership = known.membership.begun_again();
         self.outbox = known.outbox.begun_again();
         self.join_in(period);
@@ -327,7 +292,7 @@ impl Robot {
     fn join_in(&mut self, period: u32) {
         self.schedule.join(period);
         if period > 1 {
-            self.is_late = true;
+            self.duty.join_late();
             self.membership.join_in(period);
             self.changes.allow_jump();
             self.note_change();
@@ -336,8 +301,11 @@ impl Robot {
 
     /// The post of a redundant robot that no robot has ever had.
     pub(super) fn new_post(&self) -> Post {
-        let made =
-            self.schedule.period().wrapping_mul(POSTS_OF_A_PERIOD).wrapping_add(self.posts_made);
+        let made = self
+            .schedule
+            .period()
+            .wrapping_mul(POSTS_OF_A_PERIOD)
+            .wrapping_add(self.duty.posts_made());
         let number = made.wrapping_mul(self.site.robots as u32).wrapping_add(self.id as u32);
         Post::redundant(PostId(FIRST_NEW_POST | number))
     }
@@ -378,9 +346,9 @@ impl Robot {
             bulletin: self.bulletin.clone(),
             announced: self.announced.clone(),
             forgetful: Arc::clone(&self.forgetful),
-            election: self.election.clone(),
-            agreement: self.agreement.clone(),
-            route: self.route.clone(),
+            election: self.ballot.election().cloned(),
+            agreement: self.ballot.agreement().cloned(),
+            route: self.ballot.route().cloned(),
             crossing: Vec::new(),
             lineage: self.lineage().cloned(),
             parent: self.parent,
@@ -395,7 +363,7 @@ impl Robot {
             offer: self.offers().offer().cloned(),
             offers_made: self.offers().offers_made(),
             reply: self.offers().reply().cloned(),
-            team: self.team,
+            team: self.team.report(),
             stretched: self.stretched,
             longest_wait: self.longest_wait(),
             wrecks: Arc::clone(self.membership.wrecks()),
@@ -431,7 +399,9 @@ impl Robot {
     /// A control period begins: what is looked at once a period.
     fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.outbox.send_beacon_again();
-        let counted = |robot: &Self| (robot.unused_periods, robot.orphaned_periods, robot.partner);
+        let counted = |robot: &Self| {
+            (robot.unused_periods, robot.orphaned_periods, robot.exchanges.partner())
+        };
         let before = counted(self);
         self.count_unused_periods();
         self.count_orphaned_periods();
@@ -486,7 +456,7 @@ impl Robot {
     /// One that joins a mission under way takes a new post before anything else.
     fn jump_once(&mut self) -> Result<bool, TransitionError> {
         let role = self.role();
-        let jumped = self.is_late && self.jump_duty(Label::Alone)?.is_some()
+        let jumped = self.duty.is_late() && self.jump_duty(Label::Alone)?.is_some()
             || self.jump_mission()?
             || self.jump_duty(Label::Alone)?.is_some();
         if jumped {

@@ -315,7 +315,7 @@ impl Robot {
     pub(super) fn restart_clock(&mut self) {
         self.schedule.begin_period();
         self.note_period_boundary();
-        self.posts_made = 0;
+        self.duty.begin_period();
         self.body.restart_clock();
     }
 }

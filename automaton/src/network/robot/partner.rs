@@ -20,9 +20,10 @@
 //! [`Offers`]: pleach_discrete::network::Offers
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Agreement, NodeId, NoticeId, Offer, Phase, Post, PostKind, Reply};
+use pleach_discrete::network::{Agreement, NodeId, Offer, Phase, Post, PostKind, Reply};
 
 use super::Robot;
+use super::exchanges::Progress;
 use super::hearing::Neighbour;
 use crate::network::beacon::{Announced, TeamReport};
 use crate::network::duty::{Duty, Shifting};
@@ -55,31 +56,11 @@ fn stands_behind(ahead: Option<&TeamReport>, behind: Option<&TeamReport>) -> boo
     is_behind(ahead, behind) && behind.is_some_and(TeamReport::stands_still)
 }
 
-/// The last answer to the offers of a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Answered {
-    /// The number of the offer.
-    pub number: u32,
-    /// It was a refusal, and the mover was gone before it heard that.
-    pub in_vain: bool,
-}
-
-/// What has become of the offers of a robot since the mission last made progress.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct PastOffers {
-    /// The newest notice, and how many subgroups of Σ had arrived.
-    since: (NoticeId, usize),
-    /// The robots with which it has exchanged duties, one after the other.
-    exchanged: Vec<NodeId>,
-    /// The robots that have refused.
-    refused: Vec<NodeId>,
-}
-
 impl Robot {
     /// Once a period: a mover that makes no progress looks for a partner among the robots in its way. One that
     /// does not take part could be gone before it has answered.
     pub(super) fn consider_exchange(&mut self) {
-        self.partner = None;
+        self.exchanges.choose_partner(None);
         if self.is_engaged() || self.body.still_periods() < PATIENCE || !self.may_hand_over() {
             return;
         }
@@ -103,7 +84,8 @@ impl Robot {
         let best = candidates.min_by(|one, other| {
             one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)).then(one.2.cmp(&other.2))
         });
-        self.partner = best.map(|(_, _, id)| id);
+        let partner = best.map(|(_, _, id)| id);
+        self.exchanges.choose_partner(partner);
     }
 
     /// Whether the two have exchanged duties since the mission last made progress: each of them may be nearer to the goal
@@ -115,31 +97,13 @@ impl Robot {
     }
 
     /// The newest notice, and how many subgroups of Σ have arrived.
-    fn progress(&self) -> (NoticeId, usize) {
+    pub(super) fn progress(&self) -> Progress {
         (self.notice_id(), self.subgroups_done())
     }
 
     /// The robots with which it has exchanged duties since the mission last made progress, and those that have refused.
     pub(super) fn past_offers(&self) -> (&[NodeId], &[NodeId]) {
-        let past = self.past_offers.as_ref().filter(|past| past.since == self.progress());
-        past.map_or((&[], &[]), |past| (&past.exchanged, &past.refused))
-    }
-
-    /// It has exchanged duties with this robot.
-    pub(super) fn remember_partner(&mut self, partner: NodeId) {
-        self.offers_to_remember().exchanged.push(partner);
-    }
-
-    /// This robot has refused its offer: others come first from now on.
-    pub(super) fn remember_refusal(&mut self, partner: NodeId) {
-        self.offers_to_remember().refused.push(partner);
-    }
-
-    fn offers_to_remember(&mut self) -> &mut PastOffers {
-        let since = self.progress();
-        self.past_offers.take_if(|past| past.since != since);
-        let none = || PastOffers { since, exchanged: Vec::new(), refused: Vec::new() };
-        self.past_offers.get_or_insert_with(none)
+        self.exchanges.past_offers(self.progress())
     }
 
     /// Whether this robot is on a way that another could go on with. One that makes way for the team is not.
@@ -161,7 +125,8 @@ impl Robot {
 
     /// Whether this robot is anywhere behind the neighbour in the primary team.
     pub(super) fn is_behind_in_team(&self, neighbour: &Neighbour) -> bool {
-        self.is_of_team(neighbour) && is_behind(neighbour.beacon.team.as_ref(), self.team.as_ref())
+        self.is_of_team(neighbour)
+            && is_behind(neighbour.beacon.team.as_ref(), self.team.report().as_ref())
     }
 
     /// Whether this robot and the neighbour are both of the primary team.
@@ -190,7 +155,7 @@ impl Robot {
         let mut children = self.children_of(station.post.id);
         let children_hold = children.all(keeps_link_to);
         let makes_room = match self.is_of_team(parked) {
-            true => stands_behind(self.team.as_ref(), parked.beacon.team.as_ref()),
+            true => stands_behind(self.team.report().as_ref(), parked.beacon.team.as_ref()),
             false => parked.beacon.parked,
         };
         makes_room
@@ -250,7 +215,7 @@ impl Robot {
     pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Offer<Duty>)> {
         self.neighbours.iter().find_map(|neighbour| {
             let (mover, offer) = (neighbour.id(), neighbour.beacon.offer.as_ref()?);
-            let answered = self.answered.get(&mover).map(|answered| answered.number);
+            let answered = self.exchanges.answered(mover);
             let is_asked = offer.asks(self.id, answered)
                 || self.has_refused_in_vain(mover, offer) && !self.membership.is_gone(mover);
             is_asked.then_some((mover, offer))
@@ -260,8 +225,7 @@ impl Robot {
     /// Whether it has refused this offer, and the mover was gone before it heard that. If it comes back, it
     /// is refused again: it may have heard the first refusal after all.
     fn has_refused_in_vain(&self, mover: NodeId, offer: &Offer<Duty>) -> bool {
-        let answered = self.answered.get(&mover);
-        offer.to == self.id && answered.is_some_and(|it| it.in_vain && it.number == offer.number)
+        offer.to == self.id && self.exchanges.is_refused_in_vain(mover, offer)
     }
 
     /// Whether the mover has given its offer up, so that it has heard the reply.
@@ -276,7 +240,9 @@ impl Robot {
     pub(super) fn may_be_relieved(&self) -> bool {
         let stands_behind_mover = || {
             let mover = self.offer_to_answer().and_then(|(mover, _)| self.neighbour(mover));
-            mover.is_some_and(|it| stands_behind(it.beacon.team.as_ref(), self.team.as_ref()))
+            mover.is_some_and(|it| {
+                stands_behind(it.beacon.team.as_ref(), self.team.report().as_ref())
+            })
         };
         (self.is_parked() || stands_behind_mover())
             && !(self.is_caller() && self.duty.is_primary())
@@ -306,7 +272,8 @@ impl Robot {
         let path = |agreement: &Option<Agreement>| agreement.as_ref().map(Agreement::id);
         let is_on_path = offer.duty.place().is_some() || self.duty.place().is_some();
         let knows_path = || self.mission.walk().is_some();
-        let is_same_path = || path(&mover.beacon.agreement) == path(&self.agreement);
+        let is_same_path =
+            || path(&mover.beacon.agreement) == self.ballot.agreement().map(Agreement::id);
         task(&mover.beacon.announced) == task(&self.announced)
             && (!is_on_path || knows_path() && is_same_path())
     }

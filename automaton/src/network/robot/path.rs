@@ -90,7 +90,7 @@ impl Robot {
     }
 
     pub(super) fn break_points(&self) -> Option<Vec<usize>> {
-        self.agreement.as_ref()?.break_points(self.mission.path()?.len())
+        self.ballot.agreement()?.break_points(self.mission.path()?.len())
     }
 
     /// How many subgroups of the path have arrived, as far as it knows.
@@ -105,17 +105,17 @@ impl Robot {
 
     /// Whether the robot at `place` of Σ has reported that it has arrived at the next.
     pub(super) fn has_reported(&self, place: usize) -> bool {
-        self.agreement.as_ref().is_some_and(|known| known.have_arrived(place..place + 1))
+        self.ballot.agreement().is_some_and(|known| known.have_arrived(place..place + 1))
     }
 
     /// Whether every member of `subgroup` has reported that it has arrived.
     pub(super) fn knows_arrived(&self, subgroup: Subgroup) -> bool {
-        self.agreement.as_ref().is_some_and(|agreement| agreement.have_arrived(subgroup.places()))
+        self.ballot.agreement().is_some_and(|agreement| agreement.have_arrived(subgroup.places()))
     }
 
     /// Whether the robot at `place` of Σ has given its post up to the robot behind.
     pub(super) fn has_given_up(&self, place: usize) -> bool {
-        self.agreement.as_ref().is_some_and(|agreement| agreement.has_given_up(place))
+        self.ballot.agreement().is_some_and(|agreement| agreement.has_given_up(place))
     }
 
     /// The place of Σ whose post it holds and leaves to another.
@@ -131,9 +131,8 @@ impl Robot {
             && let Some(behind) = shift.and_then(|shift| shift.subgroup_up_to(place))
             && self.knows_arrived(behind)
             && !self.is_engaged()
-            && let Some(agreement) = &mut self.agreement
         {
-            agreement.give_up(place);
+            self.ballot.give_up(place);
         }
     }
 
@@ -143,9 +142,8 @@ impl Robot {
             && self.active_subgroup().is_some()
             && !self.is_engaged()
             && self.has_arrived()
-            && let Some(agreement) = &mut self.agreement
         {
-            agreement.arrive(place);
+            self.ballot.arrive(place);
         }
     }
 

@@ -75,7 +75,7 @@ pub(super) fn announce_path(
     effects: &mut Effects,
 ) -> Option<PathAgreement> {
     let Notice::Call { releases_leader, .. } = *robot.notice() else { return None };
-    let (_, hops) = robot.route.as_ref()?;
+    let (_, hops) = robot.ballot.route()?;
     let path = Arc::new(Path { hops: hops.to_vec(), releases_leader });
     let id = robot.next_notice_id();
     effects.extend([
@@ -171,7 +171,7 @@ impl Robot {
         let have_been_asked = [own_root, self.led_from];
         let others: IdSet =
             known.eligible.iter().filter(|&root| !have_been_asked.contains(&Some(root))).collect();
-        let is_any_disconnected = self.election.as_ref().is_some_and(|it| it.best().is_some());
+        let is_any_disconnected = self.ballot.best().is_some();
         if is_any_disconnected && others.len() < known.eligible.len() && !others.is_empty() {
             return Some(Announcement { eligible: Arc::new(others), ..known.clone() });
         }
@@ -201,10 +201,8 @@ impl Robot {
     }
 
     fn standstill(&self) -> Option<Standstill> {
-        self.team.map(|TeamReport { remaining, saturated, near_other_tree, .. }| Standstill {
-            remaining,
-            saturated,
-            near_other_tree,
+        self.team.report().map(|TeamReport { remaining, saturated, near_other_tree, .. }| {
+            Standstill { remaining, saturated, near_other_tree }
         })
     }
 
@@ -249,9 +247,8 @@ impl Robot {
     /// Whether it counts the rounds of an election: of a recruit, or of a leader as long as it has not
     /// answered.
     pub(super) fn counts_rounds(&self) -> bool {
-        let has_answered = |election: &Election| election.has_token(self.id);
         match self.phase() {
-            Phase::LeaderElection => !self.election.as_deref().is_some_and(has_answered),
+            Phase::LeaderElection => !self.ballot.has_token(self.id),
             phase => phase == Phase::RecruitElection,
         }
     }
@@ -262,41 +259,40 @@ impl Robot {
         if !self.counts_rounds() {
             return false;
         }
-        self.waited_rounds += 1;
-        self.waited_rounds == self.longest_wait() + 1
-            || self.waited_rounds == 2 * self.longest_wait()
+        let longest_wait = self.longest_wait();
+        self.ballot.count_round(longest_wait)
     }
 
     /// Finds the way over the tree to the caller (footnote 10) and places a token: robots that may be
     /// recruited with a bid, once they know the way.
     pub(super) fn answer_call(&mut self) {
         let id = self.notice_id();
-        let Some(election) = &self.election else { return };
         // One that has restarted may have answered already: the task is announced again.
-        if election.id() != id || self.forgetful.contains(self.id) {
+        if !self.ballot.is_of(id) || self.forgetful.contains(self.id) {
             return;
         }
         if !self.knows_route() {
-            self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
+            let route = self.find_route(id).map(|route| (id, Shared::new(route)));
+            self.ballot.set_route(route);
         }
-        if self.election.as_deref().is_some_and(|election| election.has_token(self.id)) {
+        if self.ballot.has_token(self.id) {
             return;
         }
-        let bid = match (&self.route, self.recruit_rank()) {
+        let bid = match (self.ballot.route(), self.recruit_rank()) {
             (_, None) => None,
             (Some((_, route)), Some(Rank::Redundant)) if !self.is_open(route) => {
                 Some(self.recruit_bid(Rank::Obstructed, route.len()))
             }
             (Some((_, route)), Some(rank)) => Some(self.recruit_bid(rank, route.len())),
-            (None, _) if self.waited_rounds < 2 * self.longest_wait() => return,
+            (None, _) if !self.ballot.has_waited_for(2 * self.longest_wait()) => return,
             (None, _) => self.disconnected_bid(),
         };
-        self.place_token(bid);
+        self.ballot.place(self.id, bid);
     }
 
     /// Whether it knows its way to the robot that calls. One that has restarted since it bid may not.
     pub(super) fn knows_route(&self) -> bool {
-        self.route.as_ref().is_some_and(|&(call, _)| call == self.notice_id())
+        self.ballot.route_of(self.notice_id()).is_some()
     }
 
     fn takes_part_in_elections(&self) -> bool {
@@ -362,7 +358,7 @@ impl Robot {
     fn find_route(&self, id: NoticeId) -> Option<Vec<Hop>> {
         let own = *self.duty.post()?;
         let known = |beacon: &Beacon| beacon.route.as_ref().is_some_and(|&(call, _)| call == id);
-        let may_cross = self.waited_rounds > self.longest_wait();
+        let may_cross = self.ballot.has_waited_for(self.longest_wait() + 1);
         let joins = |neighbour: &Neighbour| match neighbour.post() {
             None => self.anchor_of(neighbour).is_some_and(|anchor| own.parent == Some(anchor)),
             Some(post) => {

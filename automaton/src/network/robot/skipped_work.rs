@@ -39,7 +39,7 @@ impl Robot {
         self.caches()
             && matches!(*self.duty, Standby(_) | Relay(_) | Junction(_) | Leaf(_))
             && self.changes.is_quiet()
-            && !self.is_late
+            && !self.duty.is_late()
             && !self.awaits_confirmation
             && self.navigation.waypoint().is_none()
             && !self.body.is_moving()
@@ -89,13 +89,13 @@ impl Robot {
         first_difference! {
             "newest notice": now.bulletin, then.bulletin;
             "election": now.election, then.election;
-            "bid": self.bid, before.bid;
+            "ballot": self.ballot, before.ballot;
             "agreement": now.agreement, then.agreement;
             "way to the caller": now.route, then.route;
             "report on the team": now.team, then.team;
             "links of the tree": now.stretched, then.stretched;
             "longest wait": now.longest_wait, then.longest_wait;
-            "post that is followed": self.followed_post, before.followed_post;
+            "team": self.team, before.team;
             "mission": self.mission, before.mission;
             "lineage": now.lineage, then.lineage;
             "parent": now.parent, then.parent;
@@ -110,9 +110,7 @@ impl Robot {
             "tasks that are over": now.closed, then.closed;
             "wrecks": now.wrecks, then.wrecks;
             "branches": now.branches, then.branches;
-            "exchange of duties": self.exchange, before.exchange;
-            "offers answered": self.answered, before.answered;
-            "partner": self.partner, before.partner;
+            "exchanges of duties": self.exchanges, before.exchanges;
             "beacon": now, then;
         }
     }

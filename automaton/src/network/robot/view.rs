@@ -11,7 +11,7 @@ use super::links::TreeLink;
 use super::routing::RouteLink;
 use super::{Facts, Robot};
 use crate::located::Place as _;
-use crate::network::beacon::{Beacon, Notice, TeamReport};
+use crate::network::beacon::{Beacon, Notice};
 use crate::network::duty::Duty;
 use crate::network::mission::Mission;
 use crate::node::Observed;
@@ -56,7 +56,7 @@ impl<'a> RobotView<'a> {
 
     /// Its location in the automaton of the exchange of duties.
     pub fn exchange(self) -> ExchangeStage {
-        self.0.exchange.location()
+        self.0.exchanges.current().location()
     }
 
     /// Its location in the automaton of the mission, with the data.
@@ -189,7 +189,7 @@ impl<'a> RobotView<'a> {
 
     /// Whether it is of the primary team, and stands still like all others from the leader back to it.
     pub fn stands_in_team(self) -> bool {
-        self.0.team.as_ref().is_some_and(TeamReport::stands_still)
+        self.0.team.report().is_some_and(|report| report.stands_still())
     }
 }
 

@@ -166,7 +166,7 @@ fn a_confirmation_is_passed_on_by_robots_that_keep_their_posts() {
         let station = Station { post: fixed(20, 11), reference: HERE };
         let held = Held { station, left: None };
         let waiting = Waiting { held, place: 1, role: Role::Node };
-        robot.duty = Current::new(Duty::Waiting(waiting));
+        robot.duty.is(Duty::Waiting(waiting));
     };
     assert_eq!(passes_on(&waits), None);
 }
@@ -222,7 +222,7 @@ fn a_robot_stands_for_the_post_that_the_one_ahead_has_left() {
         robot.mission = Current::new(second_subgroup_of(posts));
         let held = Held { station: Station { post: posts[1], reference: HERE }, left: None };
         let waiting = Waiting { held, place: 1, role: Role::Redundant };
-        robot.duty = Current::new(Duty::Waiting(waiting));
+        robot.duty.is(Duty::Waiting(waiting));
         robot.hears(Beacon { duty: Some(ahead), ..Beacon::silent(3, east(0.5)) });
         robot.hears(Beacon { parent, ..beacon(1, west(0.1), posts[1], &[]) });
         robot.may_set_out()
@@ -307,7 +307,7 @@ fn orphan(periods: u32, heard: Beacon) -> Option<Option<Anchor>> {
 fn orphan_with(duty: fn(Held) -> Duty, periods: u32, heard: Beacon) -> Option<Option<Anchor>> {
     let mut robot = robot();
     let held = Held { station: Station { post: fixed(20, 21), reference: HERE }, left: None };
-    robot.duty = Current::new(duty(held));
+    robot.duty.is(duty(held));
     robot.hears(heard);
     (0..periods).for_each(|_| robot.count_orphaned_periods());
     robot.keep_place().expect("it goes on");
@@ -542,7 +542,7 @@ fn a_bound_leader_waits_for_nodes_to_retire_before_it_calls() {
         robot.announced =
             Some((id, Shared::new(Announcement { before: before.into(), ..(*known).clone() })));
         let held = Held { station: Station { post: fixed(20, 13), reference: HERE }, left: None };
-        robot.duty = Current::new(Duty::Bound(Bound(held)));
+        robot.duty.is(Duty::Bound(Bound(held)));
         (0..9)
             .take_while(|_| {
                 let waits = robot.awaits_retirements();
@@ -636,7 +636,7 @@ fn a_robot_that_is_gone_and_does_not_hear_its_parent_forgets_the_way() {
 fn a_robot_on_its_way_along_sigma_reports_robots_that_know_no_way() {
     let strays = |duty: Duty| {
         let mut robot = robot();
-        robot.duty = Current::new(duty);
+        robot.duty.is(duty);
         robot.hears(beacon(3, north(0.5), redundant(16, 17), &[]));
         robot.look_after_place().expect("it goes on");
         IdSet::clone(&robot.strays)

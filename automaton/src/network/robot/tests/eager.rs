@@ -3,6 +3,7 @@
 use pleach_discrete::network::{Agreement, Election, Phase};
 
 use super::*;
+use crate::network::beacon::TeamReport;
 use crate::network::duty::{Hop, PathPlace};
 use crate::network::scenario::Strategy;
 
@@ -43,16 +44,17 @@ fn a_recruit_is_called_for_ahead_exactly_where_links_cannot_reach_the_task() {
 fn a_team_reaches_as_many_links_as_it_has_members() {
     let phase = |away: f64, members: u32, change: &dyn Fn(&mut Robot)| {
         let mut robot = leader(Strategy::Eager, away);
-        robot.team.as_mut().expect("it leads").members = members;
+        let report = robot.team.report().expect("it leads");
+        robot.team.is_told(Some(TeamReport { members, ..report }));
         change(&mut robot);
         next_phase(&mut robot)
     };
     let reach = reach_alone() + robot().hard_length();
     assert_eq!(phase(reach - LITTLE, 2, &|_| ()), Phase::Advance);
     assert_eq!(phase(reach + LITTLE, 2, &|_| ()), Phase::RecruitElection);
-    let is_followed = |robot: &mut Robot| robot.followed_post = Some(PostId(30));
+    let is_followed = |robot: &mut Robot| robot.team.is_followed(PostId(30));
     assert_eq!(phase(reach + LITTLE, 2, &is_followed), Phase::Advance, "it is not p₁");
-    let knows_no_team = |robot: &mut Robot| robot.team = None;
+    let knows_no_team = |robot: &mut Robot| robot.team.is_told(None);
     assert_eq!(phase(reach + LITTLE, 2, &knows_no_team), Phase::Advance);
 }
 
@@ -79,7 +81,7 @@ fn caller(ahead: bool) -> Robot {
     robot.seeks_recruit(ahead, true);
     let mut election = Election::new(robot.notice_id());
     (0..ROBOTS).for_each(|other| election.place(other, None));
-    robot.election = Some(Arc::new(election));
+    robot.ballot.takes_part_in(election);
     robot
 }
 
@@ -205,11 +207,11 @@ fn a_robot_on_its_way_takes_the_post_ahead_whatever_follows_the_advance() {
         robot.advances_to(east(3.0));
         let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
         robot.mission = Current::new(Mission::Shift(shift));
-        robot.duty = Current::new(Duty::Shifting(Shifting { place: 0, left: None }));
+        robot.duty.is(Duty::Shifting(Shifting { place: 0, left: None }));
         let mut agreement = Agreement::new(robot.notice_id());
         agreement.arrive(0);
         agreement.give_up(1);
-        robot.agreement = Some(agreement);
+        robot.ballot.agree(Some(agreement));
         robot.is_told(notice);
         let phase = next_phase(&mut robot);
         (phase, robot.duty.post().map(|post| post.id))

@@ -19,14 +19,14 @@ fn asked(place: Point) -> Robot {
     robot.is_told(Notice::Quiet);
     robot.knows_task(place);
     robot.mission = Current::new(Mission::LeaderElection(LeaderElection));
-    robot.election = Some(Arc::new(Election::new(robot.notice_id())));
+    robot.ballot.takes_part_in(Election::new(robot.notice_id()));
     robot
 }
 
 fn leader_bid(robot: &mut Robot) -> Option<Bid> {
     robot.answer_announcement();
-    assert!(robot.election.as_ref().is_some_and(|it| it.has_token(0)), "it places its token");
-    robot.bid
+    assert!(robot.ballot.has_token(0), "it places its token");
+    robot.ballot.bid()
 }
 
 /// In units of 10⁻⁶ of the length up to which links are made.
@@ -147,15 +147,15 @@ fn a_robot_that_knows_no_way_looks_for_one_before_it_answers() {
     let mut lost = asked(east(1.0));
     lost.holds(Post::redundant(PostId(0)));
     lost.look_after_place().expect("it goes on");
-    lost.waited_rounds = 2 * lost.longest_wait() - 1;
+    lost.ballot.has_waited(2 * lost.longest_wait() - 1);
     lost.answer_announcement();
-    assert!(!lost.election.as_ref().is_some_and(|it| it.has_token(0)));
-    lost.waited_rounds += 1;
+    assert!(!lost.ballot.has_token(0));
+    lost.ballot.has_waited(lost.ballot.waited_rounds() + 1);
     assert_eq!(leader_bid(&mut lost), None, "it lets the others elect");
     let mut other = asked(east(1.0));
     other.is_told(Notice::Quiet);
     other.answer_announcement();
-    assert!(!other.election.as_ref().is_some_and(|it| it.has_token(0)), "it is another election");
+    assert!(!other.ballot.has_token(0), "it is another election");
 }
 
 /// Robot 0 hears that robot 5 calls for a recruit, and its tree neighbour 1 knows the way.
@@ -165,7 +165,7 @@ fn called(own: Post, releases_leader: bool) -> Robot {
     robot.is_told(Notice::Call { caller: 5, releases_leader });
     robot.knows_task(east(3.0));
     robot.seeks_recruit(false, false);
-    robot.election = Some(Arc::new(Election::new(robot.notice_id())));
+    robot.ballot.takes_part_in(Election::new(robot.notice_id()));
     robot
 }
 
@@ -181,8 +181,8 @@ fn knows_way(robot: &Robot, id: NodeId, at: Point, held: Post) -> Beacon {
 
 fn recruit_bid(robot: &mut Robot) -> Option<Option<Bid>> {
     robot.answer_call();
-    let has_token = robot.election.as_ref().is_some_and(|it| it.has_token(0));
-    has_token.then_some(robot.bid)
+    let has_token = robot.ballot.has_token(0);
+    has_token.then_some(robot.ballot.bid())
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn a_redundant_robot_bids_its_residual_and_then_the_shorter_path() {
         robot.routing.leaves(residual);
         robot.hears(knows_way(&robot, 1, east(0.5), fixed(11, 13)));
         let bid = recruit_bid(&mut robot).expect("it answers").expect("it competes");
-        let route = &robot.route.as_ref().expect("it knows its way").1;
+        let route = &robot.ballot.route().expect("it knows its way").1;
         assert_eq!(route.iter().map(|hop| hop.robot).collect::<Vec<_>>(), [0, 1]);
         (bid.rank, bid.merit, bid.economy)
     };
@@ -205,10 +205,10 @@ fn a_redundant_robot_bids_its_residual_and_then_the_shorter_path() {
 fn the_way_to_the_caller_leads_over_links_of_the_tree() {
     let finds = |own: Post, held: Post, at: Point, waited: usize| {
         let mut robot = called(own, false);
-        robot.waited_rounds = waited;
+        robot.ballot.has_waited(waited);
         robot.hears(knows_way(&robot, 1, at, held));
         robot.answer_call();
-        robot.route.is_some()
+        robot.ballot.route().is_some()
     };
     let near = east(0.5);
     let mut waiting = called(redundant(0, 12), false);
@@ -226,7 +226,7 @@ fn the_way_to_the_caller_leads_over_links_of_the_tree() {
     let known = knows_way(&rooted, 1, near, stranger()).route;
     rooted.hears(Beacon { route: known, ..access_point(west(0.5)) });
     rooted.answer_call();
-    assert!(rooted.route.is_some(), "the access point that it is attached to");
+    assert!(rooted.ballot.route().is_some(), "the access point that it is attached to");
 }
 
 #[test]
@@ -257,7 +257,7 @@ fn a_robot_that_bears_others_is_no_recruit() {
     let releases = |robot: &mut Robot| {
         relay(robot);
         robot.is_told(Notice::Call { caller: 5, releases_leader: true });
-        robot.election = Some(Arc::new(Election::new(robot.notice_id())));
+        robot.ballot.takes_part_in(Election::new(robot.notice_id()));
         robot.hears(knows_way(robot, 1, east(0.5), fixed(11, 13)));
     };
     assert_eq!(class(&releases), None, "the leader has past duties");
@@ -267,9 +267,9 @@ fn a_robot_that_bears_others_is_no_recruit() {
 fn a_robot_that_finds_no_way_waits_before_it_shows_where_it_could_help() {
     let mut robot = called(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) }, false);
     robot.look_after_place().expect("it goes on");
-    robot.waited_rounds = 2 * robot.longest_wait() - 1;
+    robot.ballot.has_waited(2 * robot.longest_wait() - 1);
     assert_eq!(recruit_bid(&mut robot), None, "it waits");
-    robot.waited_rounds += 1;
+    robot.ballot.has_waited(robot.ballot.waited_rounds() + 1);
     let bid = recruit_bid(&mut robot).expect("it answers").expect("it could help elsewhere");
     assert_eq!((bid.rank, bid.merit), (0, 0));
     assert!(!Robot::can_come(bid) && Robot::can_come(Bid { rank: 1, ..bid }));
@@ -300,7 +300,7 @@ fn rounds_of_an_election_are_counted_until_its_waits_are_over() {
     let due: Vec<usize> = (1..=3 * wait).filter(|_| robot.count_round()).collect();
     assert_eq!(due, [wait + 1, 2 * wait]);
     robot.mission = Current::new(Mission::Idle(Idle));
-    assert!(!robot.count_round() && robot.waited_rounds == 3 * wait);
+    assert!(!robot.count_round() && robot.ballot.waited_rounds() == 3 * wait);
     let mut asked = asked(east(1.0));
     assert!(asked.counts_rounds());
     asked.answer_announcement();
@@ -403,7 +403,7 @@ fn who_has_been_asked_is_not_asked_again_because_the_team_is_in_another_tree() {
         robot.announced = Some((id, Shared::new(Announcement { eligible, ..(*known).clone() })));
         let mut election = Election::new(robot.notice_id());
         election.place(4, Some(Bid { rank: 0, merit: -1, economy: 0 }));
-        robot.election = Some(Arc::new(election));
+        robot.ballot.takes_part_in(election);
         let next = robot.announcement_to_others(None);
         next.map(|next| next.eligible.iter().collect::<Vec<_>>())
     };
@@ -421,7 +421,7 @@ fn all_are_asked_with_stretched_links_after_the_others_have_been() {
     robot.knows_task(east(3.0));
     let mut election = Election::new(robot.notice_id());
     election.place(4, Some(Bid { rank: 0, merit: -1, economy: 0 }));
-    robot.election = Some(Arc::new(election));
+    robot.ballot.takes_part_in(election);
     let mut asked = Vec::new();
     let (id, known) = robot.announced.clone().expect("it knows the task");
     let mut known = Announcement { eligible: Arc::new((0..2).collect()), ..(*known).clone() };
@@ -445,7 +445,7 @@ fn a_robot_that_hears_of_the_leader_first_knows_in_whose_tree_that_was_elected()
         robot.mission = Current::new(Mission::LeaderElection(LeaderElection));
         let mut election = Election::new(robot.notice_id());
         election.place(4, Some(Bid { rank: 1, merit: -2, economy: -1 }));
-        robot.election = Some(Arc::new(election));
+        robot.ballot.takes_part_in(election);
         robot.is_told(notice);
         (next_phase(&mut robot), robot.led_from)
     };
@@ -467,7 +467,8 @@ fn once_links_are_stretched_all_are_asked_once_more() {
         let bid = Bid { rank: 0, merit: -1, economy: 0 };
         let mut election = Election::new(robot.notice_id());
         election.place(4, has_bid.then_some(bid));
-        (robot.election, robot.stretched) = (Some(Arc::new(election)), stretched);
+        robot.ballot.takes_part_in(election);
+        robot.stretched = stretched;
         robot.announcement_to_others(None).is_some_and(|next| next.stretched)
     };
     assert!(are_asked(true, true, false));
@@ -510,7 +511,7 @@ fn as_a_last_resort_a_robot_bids_if_its_links_hold_where_it_would_service_the_ta
 fn a_leader_that_takes_its_post_along_is_not_bound_by_what_depends_on_it() {
     let mut robot = asked_with_post(north(1.0), fixed(30, 13));
     let Duty::Relay(Relay(held)) = *robot.duty else { panic!("it holds a fixed post") };
-    robot.duty = Current::new(Duty::Bound(Bound(held)));
+    robot.duty.is(Duty::Bound(Bound(held)));
     robot.measures();
     assert!(robot.facts.may_leave_post);
     robot.holds(primary(30, None, 13));
@@ -531,7 +532,7 @@ fn where_no_post_can_come_along_the_robot_that_asked_gives_the_task_up() {
         let mut election = Election::new(robot.notice_id());
         (0..ROBOTS).for_each(|other| election.place(other, bid.filter(|_| other == 3)));
         robot.mission = Current::new(Mission::LeaderElection(LeaderElection));
-        robot.election = Some(Arc::new(election));
+        robot.ballot.takes_part_in(election);
         next_phase(&mut robot);
         matches!(robot.notice(), Notice::Ended { outcome: Outcome::InsufficientRobots, .. })
     };

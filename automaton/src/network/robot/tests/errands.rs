@@ -17,7 +17,7 @@ fn held() -> Held {
 /// Robot 0 with this duty, which hears that these tasks are over.
 fn told(duty: Duty, closed: &[usize]) -> Robot {
     let mut robot = robot();
-    robot.duty = Current::new(duty);
+    robot.duty.is(duty);
     let closed: Arc<IdSet> = Arc::new(closed.iter().copied().collect());
     robot.hears(Beacon { closed, ..beacon(1, east(0.5), fixed(1, 0), &[1]) });
     robot.hear_notices();

@@ -120,12 +120,12 @@ fn shifting(gap: f64, arrived: bool) -> Robot {
     let path = Arc::new(Path { hops, releases_leader: false });
     let subgroups = pleach_discrete::network::path::subgroups(&[0, 3]).collect();
     robot.mission = Current::new(Mission::Shift(Shift { path, subgroups, arrived: 0 }));
-    robot.duty = Current::new(Duty::Shifting(Shifting { place: 0, left: None }));
+    robot.duty.is(Duty::Shifting(Shifting { place: 0, left: None }));
     let mut agreement = pleach_discrete::network::Agreement::new(robot.notice_id());
     if arrived {
         agreement.arrive(1);
     }
-    robot.agreement = Some(agreement);
+    robot.ballot.agree(Some(agreement));
     let ahead = Duty::Shifting(Shifting { place: 1, left: None });
     robot.hears(Beacon { duty: Some(ahead), ..Beacon::silent(1, east(gap)) });
     robot
@@ -156,7 +156,7 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     assert_eq!(shifting(0.5, false).next_hop().map(|hop| hop.robot), Some(1));
     assert!(!robot().has_arrived(), "it is on no path");
     let mut last = shifting(queue - LITTLE, true);
-    last.duty = Current::new(Duty::Shifting(Shifting { place: 2, left: None }));
+    last.duty.is(Duty::Shifting(Shifting { place: 2, left: None }));
     assert!(!last.has_arrived(), "the break point at the end is of another subgroup");
 }
 
@@ -282,14 +282,14 @@ fn a_post_is_held_at_its_place_by_a_robot_that_has_come_there() {
 fn a_path_that_is_given_up_leaves_each_robot_a_post_of_its_own() {
     let coming = |place: usize, left: Option<u32>, reported: &[usize], arrived: usize| {
         let mut robot = shifting(0.5, false);
-        robot.duty = Current::new(Duty::Shifting(Shifting { place, left: left.map(PostId) }));
-        let agreement = robot.agreement.as_mut().expect("it is on a path");
+        robot.duty.is(Duty::Shifting(Shifting { place, left: left.map(PostId) }));
+        let agreement = &mut robot.ballot;
         reported.iter().for_each(|&place| agreement.arrive(place));
         if let Mission::Shift(shift) = &*robot.mission {
             robot.mission = Current::new(Mission::Shift(Shift { arrived, ..shift.clone() }));
         }
         assert_eq!(robot.coming_post().map(|post| post.id), Some(PostId(place as u32 + 1)));
-        robot.label = Label::Mission(MissionStep::Announced);
+        robot.duty.jump_with(Label::Mission(MissionStep::Announced));
         let Station { post, reference } = robot.coming_station().expect("it is on its way");
         let is_back = post.id == PostId(place as u32) && post.is_fixed();
         let back = robot.mission.path().expect("it is on a path").hops[place].place.reference;
@@ -341,7 +341,7 @@ fn a_robot_that_has_settled_arrives_unless_a_link_is_too_long() {
 fn a_subgroup_has_arrived_when_the_robot_at_its_end_has_given_its_post_up() {
     let arrived = |places: &[usize], is_given_up: bool| {
         let mut robot = shifting(0.5, false);
-        let agreement = robot.agreement.as_mut().expect("it is on a path");
+        let agreement = &mut robot.ballot;
         places.iter().for_each(|&place| agreement.arrive(place));
         if is_given_up {
             agreement.give_up(3);

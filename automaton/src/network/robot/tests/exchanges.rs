@@ -74,7 +74,7 @@ impl Scene {
         for robot in &mut self.robots {
             robot.measures();
             robot.consider_exchange();
-            partners[robot.id] = robot.partner;
+            partners[robot.id] = robot.exchanges.partner();
         }
         self.hear_each_other(partners);
         PAIRS.map(|[mover, parked]| {

@@ -149,7 +149,7 @@ fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
     late.schedule = Schedule::default();
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     late.hear_beacon(7, None, &heard);
-    assert_eq!((late.schedule.period(), late.is_late), (7, true));
+    assert_eq!((late.schedule.period(), late.duty.is_late()), (7, true));
     late.advance_exchange().expect("its guards have values");
     assert_eq!(
         late.offers().offers_made(),
@@ -159,16 +159,20 @@ fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
     let mut first = robot();
     first.schedule = Schedule::default();
     first.hear_beacon(1, None, &heard);
-    assert_eq!((first.schedule.period(), first.is_late), (1, false), "all begin together");
+    assert_eq!((first.schedule.period(), first.duty.is_late()), (1, false), "all begin together");
     let mut running = robot();
     running.hear_beacon(NOW + 1, None, &heard);
     assert_eq!(
-        (running.schedule.period(), running.is_late),
+        (running.schedule.period(), running.duty.is_late()),
         (NOW, false),
         "it is in the period before"
     );
     running.hear_beacon(NOW + 2, None, &Arc::new(beacon(2, west(0.5), redundant(12, 13), &[])));
-    assert_eq!((running.schedule.period(), running.is_late), (NOW + 1, true), "it has missed one");
+    assert_eq!(
+        (running.schedule.period(), running.duty.is_late()),
+        (NOW + 1, true),
+        "it has missed one"
+    );
     running.advance_exchange().expect("its guards have values");
     assert_eq!(
         running.offers().offers_made(),
@@ -255,7 +259,7 @@ fn a_robot_does_not_go_on_while_it_does_not_hear_its_parent() {
     let moves = |duty: Duty, hears_parent: bool| {
         let mut robot = robot();
         robot.membership.is_called_in(NOW);
-        robot.duty = Current::new(duty);
+        robot.duty.is(duty);
         if hears_parent {
             robot.hears(beacon(1, east(1.1), fixed(11, 12), &[11, 12]));
         }

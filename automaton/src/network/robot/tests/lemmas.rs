@@ -105,7 +105,7 @@ impl Case {
                 agreement.give_up(place);
             }
         }
-        robot.agreement = Some(agreement);
+        robot.ballot.agree(Some(agreement));
         let groups = subgroups(self.break_points()).collect();
         let shift = Shift { path: Arc::clone(&path), subgroups: groups, arrived: self.done };
         robot.mission = Current::new(Mission::Shift(shift));
@@ -121,7 +121,7 @@ impl Case {
                 Duty::Waiting(Waiting { held, place: self.place, role })
             }
         };
-        robot.duty = Current::new(duty);
+        robot.duty.is(duty);
         robot
     }
 }
@@ -136,7 +136,7 @@ fn robots_release_posts_as_the_lemma_says() {
     {
         let mut robot = case.robot(reference);
         robot.hear_notices();
-        let agreement = robot.agreement.as_ref().expect("it takes part");
+        let agreement = robot.ballot.agreement().expect("it takes part");
         for place in 0..PLACES {
             let (has_arrived, has_given_up) =
                 (agreement.have_arrived(place..place + 1), agreement.has_given_up(place));
@@ -240,13 +240,14 @@ fn new_posts_are_new() {
             (0..6).flat_map(|it| (0..POSTS_OF_A_PERIOD).map(move |n| (it, n)))
         {
             robot.schedule.is_in(period);
-            robot.posts_made = posts_made;
+            robot.duty.begin_period();
+            robot.duty.make_posts(posts_made);
             made.insert(robot.new_post().id.0);
             count += 1;
         }
         robot.schedule.is_in(NOW);
-        robot.posts_made = 0;
-        robot.is_late = true;
+        robot.duty.begin_period();
+        robot.duty.join_late();
         robot.measures();
         let expected = robot.new_post().id;
         assert!(robot.jump_once().expect("its guards have values"));

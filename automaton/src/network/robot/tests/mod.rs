@@ -184,7 +184,7 @@ impl Robot {
 
     /// It holds this post where it stands.
     fn holds(&mut self, post: Post) {
-        self.duty = Current::new(holding(post, self.body.position()));
+        self.duty.is(holding(post, self.body.position()));
     }
 
     /// The primary team is the active team, and goes to the task at `place`.

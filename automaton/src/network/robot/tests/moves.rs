@@ -90,7 +90,7 @@ fn the_holder_of_a_fixed_post_stays_within_reach_of_its_task() {
         robot.membership.is_called_in(NOW);
         robot.knows_task(west(behind));
         let place = Post { task: Some(0), ..fixed(20, 13) };
-        robot.duty = Current::new(holding(place, east(0.09)));
+        robot.duty.is(holding(place, east(0.09)));
         proposed(&mut robot).map_or(0.0, |segment| (segment.to - HERE).x)
     };
     let ahead = moved(SERVICE_RADIUS - 0.05);

@@ -4,6 +4,7 @@ use pleach_discrete::network::{Offer, Reply};
 
 use super::*;
 use crate::network::beacon::TeamReport;
+use crate::network::robot::ExchangeEffect;
 use crate::network::roll::Absent;
 use crate::network::scenario::Strategy;
 
@@ -27,11 +28,25 @@ fn stuck_by(strategy: Strategy, periods: u32) -> Robot {
 fn partner(robot: &mut Robot) -> Option<NodeId> {
     robot.measures();
     robot.consider_exchange();
-    robot.partner
+    robot.exchanges.partner()
 }
 
 fn parked(away: f64) -> Beacon {
     beacon(1, east(away), redundant(11, 13), &[11, 13, 14])
+}
+
+impl Robot {
+    /// It has exchanged duties with this robot.
+    fn remember_partner(&mut self, partner: NodeId) {
+        let progress = self.progress();
+        self.exchanges.conclude(partner, progress);
+    }
+
+    /// This robot has refused its offer.
+    fn remember_refusal(&mut self, partner: NodeId) {
+        let progress = self.progress();
+        self.exchanges.carry_out(ExchangeEffect::Refused(partner), progress);
+    }
 }
 
 /// As near as two robots come.
@@ -367,7 +382,7 @@ fn a_member_that_makes_way_for_the_team_looks_for_no_partner() {
         let mut robot = stuck(5);
         robot.holds(primary(30, Some(31), 13));
         let report = |members: u32| Some(TeamReport { members, ..team::report(5, None, None) });
-        robot.team = report(2);
+        robot.team.is_told(report(2));
         let ahead = beacon(2, east(2.05 * CLEARANCE), primary(31, None, 30), &[31, 30, 13]);
         robot.hears(Beacon { way, team: report(1), ..ahead });
         robot
@@ -389,7 +404,7 @@ fn a_member_that_stands_behind_is_a_partner() {
         |members: u32, still: u32| Some(TeamReport { members, ..team::report(still, None, None) });
     let beside = |own: u32, other: u32, still: u32| {
         let mut robot = stuck(5);
-        robot.team = report(own, 5);
+        robot.team.is_told(report(own, 5));
         let team = report(other, still);
         robot.hears(Beacon {
             team,
@@ -411,7 +426,7 @@ fn a_member_that_stands_behind_is_a_partner() {
         let mut robot = robot();
         robot.holds(primary(31, Some(30), 13));
         robot.advances_to(east(3.0));
-        robot.team = report(own, still);
+        robot.team.is_told(report(own, still));
         let duty = holding(primary(30, None, 31), west(BESIDE));
         let mut mover = beacon(1, west(BESIDE), primary(30, None, 31), &[30, 31, 13]);
         mover.offer = Some(Offer { to: 0, number: 1, duty });
@@ -452,7 +467,7 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
     let on_the_same = |phase: &dyn Fn(Shift) -> Mission| {
         relieved(&|robot, mover| {
             on_path(robot, mover);
-            robot.agreement = mover.agreement.clone();
+            robot.ballot.agree(mover.agreement.clone());
             let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
             let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
             robot.mission = Current::new(phase(shift));

@@ -54,7 +54,7 @@ fn a_link_is_as_long_as_it_may_get_when_both_are_at_their_posts() {
     let [build, hard] = [robot().build_length(), robot().hard_length()];
     let chosen = |own: f64, other: f64| {
         let mut robot = holder(Strategy::Eager);
-        robot.duty = Current::new(holding(fixed(30, 13), east(own)));
+        robot.duty.is(holding(fixed(30, 13), east(own)));
         let duty = Some(holding(fixed(14, 15), west(build - 0.1 + other)));
         choice(robot, [parent(), Beacon { duty, ..grandparent(build - 0.1) }])
     };
@@ -120,7 +120,7 @@ fn a_fixed_post_is_attached_to_another_tree_where_its_way_is_shorter() {
 fn the_post_of_a_bound_leader_is_attached_past_its_parent_too() {
     let mut robot = holder(Strategy::Eager);
     let held = *robot.duty.held().expect("it holds a post");
-    robot.duty = Current::new(Duty::Bound(Bound(held)));
+    robot.duty.is(Duty::Bound(Bound(held)));
     let heard = [parent(), grandparent(robot.build_length() - LITTLE)];
     heard.into_iter().for_each(|beacon| robot.hears(beacon));
     robot.trace_lineage().expect("its automaton goes on");

@@ -73,7 +73,7 @@ fn a_member_of_the_team_makes_way_for_those_ahead_of_it() {
         let mut robot = robot();
         robot.holds(primary(31, Some(30), 13));
         let report = |members: u32| Some(TeamReport { members, ..team::report(20, None, None) });
-        robot.team = report(own);
+        robot.team.is_told(report(own));
         robot.hears(Beacon { way: Some(way), team: report(other), ..asking(2.05 * CLEARANCE) });
         robot.place_aside().is_some_and(|place| (place - HERE).norm() <= 3.0 * CLEARANCE)
     };
