@@ -12,8 +12,6 @@
 //! A robot that is cut off stays within two steps of each place where it has been since its newest roll was called
 //! ([`membership`](super::membership)).
 
-use std::sync::Arc;
-
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, HalfPlane};
 use pleach_continuous::network::reliability::LinkReliability;
@@ -89,9 +87,7 @@ impl Robot {
         let present = self.tree_children().filter(|known| known.is_present(self.schedule.period()));
         let places = present.map(|known| Branch { robot: known.id(), place: known.position() });
         let now: Vec<Branch> = places.collect();
-        if *self.branches != now {
-            self.branches = Arc::new(now);
-        }
+        self.tree.locate_branches(now);
     }
 
     /// A beacon tells of robots that are attached to its sender.

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Bid, Confirmation, IdSet, NodeId, NoticeId, PostId, Subgroup};
+use pleach_discrete::network::{Bid, IdSet, NodeId, NoticeId, PostId, Subgroup};
 
 use super::facts::STATIONARY_WINDOW;
 use super::hearing::PATIENCE_WITH_CHILDREN;
@@ -145,7 +145,7 @@ impl Robot {
 
     /// Every way to an access point counts as confirmed anew.
     pub fn confirm_way_anew(&mut self) {
-        self.confirmation = Confirmation::default();
+        self.tree.confirm_anew();
     }
 
     /// In place of the last stages of a control period and the beginning of the next: the robot
@@ -156,7 +156,7 @@ impl Robot {
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.body.position(), still_periods);
         self.begin_period()?;
-        self.orphaned_periods = 0;
+        self.tree.find_parent();
         self.deliberate()?;
         self.jump()
     }
@@ -183,7 +183,7 @@ impl Robot {
         let numbers = Numbers { now: self.schedule.period(), passed: u32::from(!is_next) };
         let validity = self.site.roll_validity();
         self.membership.renumber(|called| numbers.of(called, validity + 1));
-        self.confirmation = self.confirmation.renumbered(|it| numbers.of(it, OLDEST_CONFIRMATION));
+        self.tree.renumber(|it| numbers.of(it, OLDEST_CONFIRMATION));
         for known in self.neighbours.iter_mut() {
             known.heard_in = numbers.of(known.heard_in, PATIENCE_WITH_CHILDREN + 1);
             known.confirmed = known.confirmed.map(|it| numbers.of(it, OLDEST_CONFIRMATION));
@@ -205,9 +205,11 @@ impl Robot {
     pub fn account_in_time(&self) -> Vec<String> {
         let seen: BTreeSet<NodeId> = self.membership.seen().collect();
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
-        let reports = (&self.strays, &self.serves, &self.forgetful);
-        let told = (self.schedule.period(), self.membership.roll(), self.confirmation, reports);
-        let waits = (self.orphaned_periods, self.duty.is_late(), self.schedule.waits());
+        let [_, strays, serves] = self.tree.reports();
+        let reports = (strays, serves, self.mission.forgetful());
+        let told =
+            (self.schedule.period(), self.membership.roll(), self.tree.confirmation(), reports);
+        let waits = (self.tree.orphaned_periods(), self.duty.is_late(), self.schedule.waits());
         let mut account = self.account();
         account.extend([format!("{told:?}"), format!("{waits:?}{seen:?}{heard:?}")]);
         account
@@ -228,21 +230,9 @@ impl Robot {
             duty,
             mission,
             exchanges,
-            parent,
-            place,
-            below,
-            can_detach,
-            unused_periods,
-            bulletin,
-            epoch,
-            announced,
-            accomplished: _, // told, as far as it decides anything
+            tree,
             ballot,
             team,
-            led_from,
-            stretched,
-            longest_wait: _, // told, with its own depth
-            closed,
             neighbours: _, // by their beacons and their silence
             // Constant.
             rate: _,
@@ -252,28 +242,16 @@ impl Robot {
             changes: _,
             outbox: _,
             membership: _,
-            heard_way: _,
-            is_displaced: _,
             facts: _,
-            desired_parent: _,
-            reattaches_to: _,
-            // The explorer confirms every way.
-            confirmation: _,
-            awaits_confirmation: _,
             // No robot is missed, and no task, where no time passes; and none restarts.
-            forgetful: _,
-            strays: _,
-            serves: _,
-            orphaned_periods: _,
-            branches: _,
             // Routes and motion.
             routing: _,
             reservation: _,
-            target: _, // by the announcement
             navigation: _,
             negotiation: _,
             bodies: _,
         } = self;
+        let [below, ..] = tree.reports();
         let has_reached = self.has_reached_task();
         let waited = match self.counts_rounds() {
             true => ballot.waited_rounds().min(2 * self.longest_wait() + 1),
@@ -284,11 +262,26 @@ impl Robot {
         vec![
             format!(
                 "{:?}",
-                (id, body.position(), body.still_periods(), parent, &**place, can_detach, silences)
+                (
+                    id,
+                    body.position(),
+                    body.still_periods(),
+                    tree.parent(),
+                    &**tree.current(),
+                    tree.can_detach(),
+                    silences
+                )
             ),
             format!(
                 "{:?}",
-                (&**duty, duty.posts_made(), unused_periods, team.followed_post(), below, closed)
+                (
+                    &**duty,
+                    duty.posts_made(),
+                    tree.unused_periods(),
+                    team.followed_post(),
+                    below,
+                    mission.closed()
+                )
             ),
             format!(
                 "{:?}",
@@ -299,13 +292,22 @@ impl Robot {
                     waited,
                     ballot.agreement(),
                     team.report(),
-                    stretched,
+                    mission.is_stretched(),
                     wait
                 )
             ),
-            format!("{led_from:?}"),
+            format!("{:?}", mission.led_from()),
             format!("{} {:?}", exchanges.account(), self.past_offers()),
-            format!("{:?}", (bulletin, epoch, announced, has_reached, ballot.route())),
+            format!(
+                "{:?}",
+                (
+                    mission.bulletin(),
+                    mission.epoch(),
+                    mission.announced(),
+                    has_reached,
+                    ballot.route()
+                )
+            ),
         ]
     }
 }

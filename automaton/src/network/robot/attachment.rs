@@ -19,7 +19,6 @@ use super::hearing::Neighbour;
 use super::motion::ROUNDING;
 use crate::network::beacon::{Announcement, Notice, Reports};
 use crate::network::duty::{Bound, Duty, Station};
-use crate::network::shared::renew;
 
 /// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
 const REATTACHMENT_GAIN: f64 = 0.05;
@@ -34,26 +33,30 @@ pub(in super::super) const PATIENCE_WITH_UNUSED_POSTS: u32 = 2;
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
     pub(super) fn keep_place(&mut self) -> Result<(), TransitionError> {
-        (self.desired_parent, self.reattaches_to) = (None, None);
+        self.tree.desire_nothing();
         if self.is_engaged() {
             // The place goes with the duty that is being handed over.
             self.trace_lineage()?;
             self.collect_below();
             return Ok(());
         }
+        let mut reattaches_to = None;
         let desired = match self.duty.location() {
             Activity::Standby if !self.tree_is_frozen() || self.anchor().is_none() => {
                 self.choose_parent()
             }
-            Activity::Following | Activity::Leading => {
-                self.replace_parent().or_else(|| self.reattach())
-            }
+            Activity::Following | Activity::Leading => self.replace_parent().or_else(|| {
+                let (anchor, node) = self.reattach()?;
+                reattaches_to = node;
+                Some(Some(anchor))
+            }),
             Activity::Relay | Activity::Junction | Activity::Leaf | Activity::Bound => {
                 self.replace_parent().or_else(|| self.shorten_way())
             }
             _ => None,
         };
-        self.desired_parent = self.await_confirmation(desired);
+        let has_to_confirm = self.has_to_confirm(desired);
+        self.tree.desire(desired, reattaches_to, has_to_confirm);
         self.look_after_place()
     }
 
@@ -61,8 +64,9 @@ impl Robot {
     /// to it, and its parent.
     pub(super) fn look_after_place(&mut self) -> Result<(), TransitionError> {
         self.trace_lineage()?;
-        self.can_detach =
+        let can_detach =
             !self.is_engaged() && self.duty.is_redundant() && self.finds_other_parent();
+        self.tree.note_other_parent(can_detach);
         self.collect_below();
         self.remember_parent();
         Ok(())
@@ -82,10 +86,8 @@ impl Robot {
             false => is_unused(),
         };
         let is_paused = self.tree_is_frozen() || self.is_engaged();
-        let enough = PATIENCE_WITH_UNUSED_POSTS + 1;
-        self.unused_periods =
-            if counts && !is_paused { enough.min(self.unused_periods + 1) } else { 0 };
-        if self.unused_periods >= PATIENCE_WITH_UNUSED_POSTS {
+        self.tree.count_unused_period(counts && !is_paused, PATIENCE_WITH_UNUSED_POSTS + 1);
+        if self.tree.unused_periods() >= PATIENCE_WITH_UNUSED_POSTS {
             self.changes.allow_jump();
         }
     }
@@ -97,7 +99,7 @@ impl Robot {
         let awaits_others = || self.is_eager() && self.announcement().is_some_and(may_retire);
         self.duty.is_bound()
             && !self.takes_post_along()
-            && self.unused_periods <= PATIENCE_WITH_UNUSED_POSTS
+            && self.tree.unused_periods() <= PATIENCE_WITH_UNUSED_POSTS
             && (self.is_bound_to_unused_post() || awaits_others())
     }
 
@@ -113,7 +115,7 @@ impl Robot {
 
     /// Whether it looks for another parent for its fixed post, or no branch depends on that any more.
     pub(super) fn is_settling(&self) -> bool {
-        let looks_for_parent = self.awaits_confirmation || self.finds_better_parent();
+        let looks_for_parent = self.tree.awaits_confirmation() || self.finds_better_parent();
         let is_unused = self.duty.location() == Activity::Relay && !self.bears_branch();
         self.is_eager() && (looks_for_parent && !self.duty.is_redundant() || is_unused)
     }
@@ -192,10 +194,9 @@ impl Robot {
 
     /// Once a period: for how long it has not heard its parent, or its post has been attached to none.
     pub(super) fn count_orphaned_periods(&mut self) {
-        let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
         let is_unattached = self.duty.post().is_some_and(|post| post.parent.is_none());
         let has_no_parent = is_unattached || self.hears_no_parent();
-        self.orphaned_periods = if has_no_parent { longer } else { 0 };
+        self.tree.count_orphaned_period(has_no_parent, PATIENCE_WITH_ORPHANED_POSTS + 1);
     }
 
     /// Another parent, where no robot has held the post for long that its own is attached to, or it is
@@ -206,7 +207,7 @@ impl Robot {
         if let Some(followed) = self.new_post_of_parent() {
             return Some(Some(followed));
         }
-        if lost.is_some() && self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
+        if lost.is_some() && self.tree.orphaned_periods() <= PATIENCE_WITH_ORPHANED_POSTS {
             return None;
         }
         let limit = self.hard_length() * (1.0 + ROUNDING);
@@ -268,7 +269,7 @@ impl Robot {
     /// Whether it could be attached to another tree: over a shorter way or, once links may be as long as they ever are,
     /// over any.
     pub(super) fn is_near_other_tree(&self) -> bool {
-        let is_longest = self.stretched || !self.site.could_stretch();
+        let is_longest = self.mission.is_stretched() || !self.site.could_stretch();
         self.node_of_other_tree().is_some()
             || is_longest && self.nodes_of_other_trees().next().is_some()
     }
@@ -427,14 +428,12 @@ impl Robot {
             let is_child = neighbour.is_attached_to(own);
             reports.take_in(&neighbour.beacon, is_child, self.id, is_linked);
         }
-        renew(&mut self.below, reports.below);
-        renew(&mut self.strays, reports.strays);
-        renew(&mut self.serves, reports.serves);
+        self.tree.collect(reports);
     }
 
     /// Remark 5.6: p₁ attaches to a fixed or redundant robot or an access point that is
-    /// nearer to its target, if there is one within d_build.
-    fn reattach(&mut self) -> Option<Option<Anchor>> {
+    /// nearer to its target, if there is one within d_build; or to the newcomer that it awaits, without a node.
+    fn reattach(&self) -> Option<(Anchor, Option<NodeId>)> {
         let awaited = self.awaited_parent();
         if self.phase() != Phase::Advance || !self.is_first() && awaited.is_none() {
             return None;
@@ -444,7 +443,7 @@ impl Robot {
             && self.is_sure_of(newcomer)
             && self.may_build(self.walk_to(newcomer))
         {
-            return Some(Some(Anchor::Post(awaited)));
+            return Some((Anchor::Post(awaited), None));
         }
         if self.is_eager() && awaited.is_some() {
             // The newcomer looks for p₁ where its link leads.
@@ -454,8 +453,7 @@ impl Robot {
             true => self.access_point_on_the_way()?,
             false => self.nearer_parent(self.build_length())?,
         };
-        self.reattaches_to = Some(parent);
-        Some(Some(anchor))
+        Some((anchor, Some(parent)))
     }
 
     /// The access point to which a newcomer is attached on its way over several of them to the team, if it is not yet.

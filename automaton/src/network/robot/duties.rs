@@ -68,8 +68,7 @@ impl Holds<Duty> for Robot {
     }
 
     fn carry_out(&mut self, effects: Effects) {
-        (self.desired_parent, self.reattaches_to) = (None, None);
-        self.unused_periods = 0;
+        self.tree.begin_duty();
         self.duty.has_jumped();
         for effect in effects {
             match effect {
@@ -78,7 +77,7 @@ impl Holds<Duty> for Robot {
                 DutyEffect::Exchanged(partner) => {
                     let progress = self.progress();
                     self.exchanges.conclude(partner, progress);
-                    self.is_displaced = true;
+                    self.tree.displace(true);
                 }
             }
         }
@@ -102,7 +101,7 @@ impl Robot {
             if self.duty.post().is_some_and(|post| Some(post.id) != held) {
                 // Who held the post before may be one control period ahead.
                 let period = self.schedule.newest_period();
-                self.confirmation.take_over(period);
+                self.tree.take_over_confirmation(period);
             }
             if self.duty.post().is_some_and(|post| post.id == self.new_post().id) {
                 self.duty.make_posts(1);
@@ -174,7 +173,7 @@ impl Robot {
     /// Whether the task that is serviced from its post is over.
     pub(super) fn services_closed_task(&self) -> bool {
         let task = self.duty.post().and_then(|post| post.task);
-        task.is_some_and(|task| self.closed.contains(task))
+        task.is_some_and(|task| self.mission.closed().contains(task))
     }
 
     /// Whether the path Σ that it learns of now passes its post, before or at the last break point.
@@ -216,7 +215,7 @@ impl Robot {
     /// given up, and tasks have ended, so that it may go on once their robots are free.
     pub(super) fn is_unbound(&self) -> bool {
         let has_ended = self.phase() == Phase::Ended || self.ends_now();
-        self.is_superseded() || has_ended && !self.closed.is_empty()
+        self.is_superseded() || has_ended && !self.mission.closed().is_empty()
     }
 
     /// Whether the primary team is dissolved.
@@ -320,7 +319,7 @@ impl Robot {
 
     /// Whether another parent has been found to be better.
     pub(super) fn finds_better_parent(&self) -> bool {
-        self.desired_parent.is_some_and(|desired| desired != self.anchor())
+        self.tree.desired_parent().is_some_and(|desired| desired != self.anchor())
     }
 }
 
@@ -417,7 +416,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
     let id = match joins_at_once && before.is_fixed() {
         true => before.id,
-        false => PostId((robot.site.robots as u32) + robot.bulletin.number()),
+        false => PostId((robot.site.robots as u32) + robot.mission.bulletin().number()),
     };
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
     let station = robot.station_here(post);
@@ -486,10 +485,10 @@ fn retire(relay: &Relay, _: &Robot, _: &mut Effects) -> Standby {
 /// shorter without it.
 fn attach<A: Holder + From<Held>>(duty: &A, robot: &Robot, effects: &mut Effects) -> A {
     let mut held = *duty.held();
-    if let Some(desired) = robot.desired_parent {
+    if let Some(desired) = robot.tree.desired_parent() {
         held.station.post.parent = desired;
     }
-    if let Some(parent) = robot.reattaches_to {
+    if let Some(parent) = robot.tree.reattaches_to() {
         let event = MissionEvent::Reattached { robot: robot.id, parent };
         effects.extend([DutyEffect::Report(event), DutyEffect::Restart]);
     }

@@ -493,10 +493,12 @@ mod tests {
                 assert!(robot.offers().reply().is_none() && !robot.is_engaged());
             }
             robot.membership.is_told(Roll::default());
-            robot.bulletin = robot.bulletin.next(2, Shared::new(Notice::Task(task())));
-            robot.announced = Some((robot.notice_id(), task()));
+            robot
+                .mission
+                .is_told(robot.mission.bulletin().next(2, Shared::new(Notice::Task(task()))));
+            robot.mission.goes_by(Some((robot.notice_id(), task())));
             offer_duty(&mut mover);
-            mover.announced = robot.announced.clone();
+            mover.announced = robot.mission.announced().cloned();
             hear(&mut robot, &mover);
             let reply = robot.offers().reply().expect("it answers");
             assert_eq!(reply.accepted.is_none(), has_refused);

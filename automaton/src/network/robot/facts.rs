@@ -135,7 +135,7 @@ facts! {
             /// The number of branches attached to the post that it takes on Σ.
             branches_ahead: robot.coming_post().map_or(0, |post| robot.branches_of(post.id)) as f64,
             /// Control periods for which no branch has depended on its post.
-            unused: f64::from(robot.unused_periods),
+            unused: f64::from(robot.tree.unused_periods()),
             /// Control periods after which a post without a branch is given up.
             unused_patience: f64::from(PATIENCE_WITH_UNUSED_POSTS),
             /// τ: seconds since the last sample.
@@ -155,13 +155,13 @@ facts! {
             /// Another node has begun the next control period.
             behind: robot.schedule.is_behind(),
             /// Its post has a parent, and it hears that or is not gone.
-            names_parent: robot.heard_way != HeardWay::NoParent,
+            names_parent: robot.tree.heard_way() != HeardWay::NoParent,
             /// Its parent tells a way to an access point that leads through its own post.
-            hears_cycle: robot.heard_way == HeardWay::Cycle,
+            hears_cycle: robot.tree.heard_way() == HeardWay::Cycle,
             /// Its parent tells a way, not through its own post, that is not the one it tells itself.
-            hears_other_way: robot.heard_way == HeardWay::Other,
+            hears_other_way: robot.tree.heard_way() == HeardWay::Other,
             /// It has been given the post of another robot in this jump.
-            displaced: robot.is_displaced,
+            displaced: robot.tree.is_displaced(),
             /// It is exchanging duties with another robot.
             engaged: robot.is_engaged(),
             /// It is the elected leader.
@@ -340,18 +340,18 @@ impl Robot {
         facts.burdened = self.is_burdened();
         facts.may_leave_post =
             self.is_bound_to_unused_post() || self.duty.is_bound() && self.takes_post_along();
-        facts.tasks_over = !self.closed.is_empty();
+        facts.tasks_over = !self.mission.closed().is_empty();
         facts.task_closed = self.services_closed_task();
         facts
     }
 
     /// What the newest notice asks of this robot.
     fn measure_notice(&self, facts: &mut Facts) {
-        let id = self.bulletin.id();
+        let id = self.notice_id();
         let election = self.ballot.election().map(|election| election.id());
         let path = self.ballot.agreement().map(|agreement| agreement.id());
         // One that pursues no task has none to give up.
-        let is_overtaken = id.epoch() > self.epoch && self.phase() != Phase::Idle;
+        let is_overtaken = id.epoch() > self.mission.epoch() && self.phase() != Phase::Idle;
         match self.notice() {
             Notice::Ended { .. } => facts.end_announced = true,
             Notice::Task(_) if election != Some(id) => facts.announced = true,
@@ -372,8 +372,8 @@ impl Robot {
 
     /// Whether it has reached its task by the announcement that it goes by.
     pub(super) fn has_reached_task(&self) -> bool {
-        let pursued = self.announced.as_ref().map(|&(id, _)| id);
-        pursued.is_some() && self.accomplished == pursued
+        let pursued = self.mission.announcement_id();
+        pursued.is_some() && self.mission.accomplished() == pursued
     }
 
     /// Whether it has reached the task that others pursue, and has said so.
@@ -381,14 +381,15 @@ impl Robot {
         let is_latest = |id: NoticeId| id.epoch() == self.notice_id().epoch();
         self.phase() == Phase::Idle
             && self.has_reached_task()
-            && self.accomplished.is_some_and(is_latest)
+            && self.mission.accomplished().is_some_and(is_latest)
     }
 
     /// Whether the token of every robot of the roster is known. A robot that has joined since the task
     /// was announced cannot tell before it knows the roster; and the roster of a task that is announced again
     /// is not that of the elections before.
     pub(super) fn election_is_over(&self) -> bool {
-        let (Some(election), Some((id, announcement))) = (self.ballot.election(), &self.announced)
+        let (Some(election), Some((id, announcement))) =
+            (self.ballot.election(), self.mission.announced())
         else {
             return false;
         };

@@ -191,7 +191,7 @@ impl Robot {
             && known.measured_at == self.body.position()
         {
             let is_back = known.note_heard(period, self.schedule.period());
-            if is_back || self.awaits_confirmation && known.confirmed < confirmed {
+            if is_back || self.tree.awaits_confirmation() && known.confirmed < confirmed {
                 self.changes.note();
             }
             known.confirmed = known.confirmed.max(confirmed);
@@ -237,7 +237,7 @@ impl Robot {
                 Neighbour { beacon: Arc::clone(beacon), confirmed, ..known.clone() }
             } else {
                 known.confirmed = confirmed;
-                if is_back || self.awaits_confirmation && is_newer {
+                if is_back || self.tree.awaits_confirmation() && is_newer {
                     self.note_change();
                 }
                 return;

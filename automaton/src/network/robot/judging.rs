@@ -72,7 +72,7 @@ impl Robot {
         }
         let heard = self.neighbours.iter().filter(|known| known.heard_in == self.schedule.period());
         let mut candidates: Vec<NodeId> = heard.map(Neighbour::id).collect();
-        candidates.sort_by_key(|&node| Some(node) != self.parent); // the parent first
+        candidates.sort_by_key(|&node| Some(node) != self.tree.parent()); // the parent first
         let turn = self.body.still_periods() as usize % candidates.len().max(1);
         candidates.get(turn).copied()
     }

@@ -40,15 +40,15 @@ impl Holds<PlaceInTree> for Robot {
     type Effects = ();
 
     fn current(&self) -> &Current<PlaceInTree> {
-        &self.place
+        self.tree.current()
     }
 
     fn current_mut(&mut self) -> &mut Current<PlaceInTree> {
-        &mut self.place
+        self.tree.current_mut()
     }
 
     fn carry_out(&mut self, (): ()) {
-        self.is_displaced = false;
+        self.tree.displace(false);
     }
 }
 
@@ -70,25 +70,23 @@ pub(super) enum HeardWay {
 impl Robot {
     /// The way from its post to an access point, if it knows one.
     pub(super) fn lineage(&self) -> Option<&Arc<Lineage>> {
-        match &*self.place {
-            PlaceInTree::Detached(_) => None,
-            PlaceInTree::Attached(attached) => Some(&attached.way),
-        }
+        self.tree.lineage()
     }
 
     /// Takes the transitions of its place in the tree that can be taken.
     pub(super) fn trace_lineage(&mut self) -> Result<(), TransitionError> {
         let site = Arc::clone(&self.site);
         loop {
-            self.heard_way = self.hear_way();
+            let way = self.way_heard();
+            self.tree.hear_way(way);
             if site.automata.attachment.step_in_place::<PlaceInTree>(self)?.is_none() {
-                self.is_displaced = false;
+                self.tree.displace(false);
                 return Ok(());
             }
         }
     }
 
-    fn hear_way(&self) -> HeardWay {
+    fn way_heard(&self) -> HeardWay {
         let (Some(post), Some(anchor)) = (self.duty.post(), self.anchor()) else {
             return HeardWay::NoParent;
         };

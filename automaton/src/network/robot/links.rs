@@ -31,7 +31,7 @@ impl Robot {
     pub(super) fn tree_parent(&self) -> Option<NodeId> {
         self.named_parent()
             .filter(|&parent| parent != self.id)
-            .or_else(|| self.parent.filter(|&parent| self.may_be_parent(parent)))
+            .or_else(|| self.tree.parent().filter(|&parent| self.may_be_parent(parent)))
     }
 
     /// Whether this node, which was its parent, may still be. One that has given its post in an exchange tells so
@@ -42,12 +42,13 @@ impl Robot {
         let holds_anchor = |post: &Post| self.anchor() == Some(Anchor::Post(post.id));
         is_under_way
             || known.post().is_none_or(holds_anchor)
-            || self.orphaned_periods <= PATIENCE_WITH_EXCHANGES
+            || self.tree.orphaned_periods() <= PATIENCE_WITH_EXCHANGES
     }
 
     /// Stores its parent.
     pub(super) fn remember_parent(&mut self) {
-        self.parent = self.tree_parent();
+        let parent = self.tree_parent();
+        self.tree.attach_to(parent);
     }
 
     /// The links of the tree at this robot: to its parent first, then to its children.
@@ -95,12 +96,12 @@ impl Robot {
 
     /// d_build: up to which length a link of the tree may be made.
     pub(super) fn build_length(&self) -> f64 {
-        self.site.lengths(self.stretched).build
+        self.site.lengths(self.mission.is_stretched()).build
     }
 
     /// d_hard: which length no link of the tree exceeds.
     pub(super) fn hard_length(&self) -> f64 {
-        self.site.lengths(self.stretched).hard
+        self.site.lengths(self.mission.is_stretched()).hard
     }
 
     /// Up to which length a link of the tree may have got through errors, as far as both of its ends may stray.
@@ -197,7 +198,7 @@ impl Robot {
     /// linked to, and that it hears from farther away than links are long, may be out of range again in the next moment:
     /// others have stopped or begun again meanwhile, and the robots between the two are gone.
     fn may_be_linked_to(&self, holder: &Neighbour) -> bool {
-        self.parent == Some(holder.id()) || self.walk_to(holder) <= self.settled_length()
+        self.tree.parent() == Some(holder.id()) || self.walk_to(holder) <= self.settled_length()
     }
 
     /// The parent of the robot that has left `place`.
@@ -231,7 +232,7 @@ impl Robot {
     /// The index in `crossing` of the access point to which it is attached: the last within d_build, and none before the
     /// one to which it was attached. One that has taken the duty over from another is attached to the nearest.
     pub(super) fn index_in_crossing(&self, crossing: &[usize]) -> usize {
-        let parent = self.parent.and_then(|node| node.checked_sub(self.site.robots));
+        let parent = self.tree.parent().and_then(|node| node.checked_sub(self.site.robots));
         let reached = parent.and_then(|parent| crossing.iter().position(|&it| it == parent));
         let distance = |&at: &usize| self.distance_to_access(crossing[at], self.body.position());
         let nearest =

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Agreement, Election, IdSet, MISSION, MissionStep, NoticeId, Phase};
+use pleach_discrete::network::{Agreement, Election, MISSION, MissionStep, NoticeId, Phase};
 use pleach_guards::{Guard, network::mission as guards};
 
 use crate::located::{Current, DataOf, Holds, Place as _};
@@ -23,7 +23,6 @@ use crate::network::mission::{
     Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
 use crate::network::record::MissionEvent;
-use crate::network::shared::Shared;
 
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
@@ -66,39 +65,35 @@ impl Holds<Mission> for Robot {
     type Effects = Effects;
 
     fn current(&self) -> &Current<Mission> {
-        &self.mission
+        self.mission.current()
     }
 
     fn current_mut(&mut self) -> &mut Current<Mission> {
-        &mut self.mission
+        self.mission.current_mut()
     }
 
     fn carry_out(&mut self, effects: Effects) {
         for effect in effects {
             match effect {
                 MissionEffect::Report(event) => self.report(event),
-                MissionEffect::Issue(notice) => self.issue(notice),
+                MissionEffect::Issue(notice) => self.mission.issue(self.id, notice),
                 MissionEffect::Learn(announced) => {
-                    self.epoch = announced.0.epoch();
                     let task = announced.1.position;
-                    self.target = Some(self.site.place_to_service(task, self.body.position()));
-                    self.announced = Some(announced);
-                    self.forgetful = Arc::default();
+                    let target = self.site.place_to_service(task, self.body.position());
+                    self.mission.learn(announced, target);
                 }
-                MissionEffect::LedFrom(root) => self.led_from = root,
-                MissionEffect::Accomplish => {
-                    self.accomplished = self.announced.as_ref().map(|&(id, _)| id);
-                }
-                MissionEffect::Forgotten => self.forgetful = Arc::new(IdSet::singleton(self.id)),
+                MissionEffect::LedFrom(root) => self.mission.is_led_from(root),
+                MissionEffect::Accomplish => self.mission.accomplish(),
+                MissionEffect::Forgotten => self.mission.forget_election(self.id),
                 MissionEffect::Elect(election, route) => {
                     self.ballot.begin(election, route);
                     self.answer_election();
                 }
                 MissionEffect::ForgetRoute => self.ballot.set_route(None),
                 MissionEffect::Agree(agreement) => self.ballot.agree(agreement),
-                MissionEffect::KeepUp => self.epoch = self.notice_id().epoch(),
+                MissionEffect::KeepUp => self.mission.keep_up(),
                 MissionEffect::Restart => self.body.count_still_periods_anew(),
-                MissionEffect::Stretch => self.stretched = true,
+                MissionEffect::Stretch => self.mission.stretch(),
                 MissionEffect::Stay => self.stay(),
             }
         }
@@ -124,15 +119,11 @@ impl Robot {
 
     /// Merges what it knows of the mission with the beacons of its neighbours.
     pub(super) fn hear_notices(&mut self) {
-        self.longest_wait = self.longest_wait();
+        let longest_wait = self.longest_wait();
+        self.mission.wait_for(longest_wait);
         for neighbour in self.neighbours.iter() {
-            let told = neighbour.beacon.longest_wait;
-            self.longest_wait = self.site.longer_wait(self.longest_wait, told);
-            self.stretched |= neighbour.beacon.stretched;
-            self.bulletin.merge(&neighbour.beacon.bulletin);
+            self.mission.merge(&neighbour.beacon, &self.site);
             self.ballot.merge(&neighbour.beacon);
-            neighbour.beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
-            neighbour.beacon.tell_closed(&mut self.closed);
         }
         self.answer_election();
         if self.phase() == Phase::Shift {
@@ -149,11 +140,6 @@ impl Robot {
             Phase::RecruitElection => self.answer_call(),
             _ => {}
         }
-    }
-
-    /// The next notice on the mission, which this robot is the one to issue.
-    fn issue(&mut self, notice: Notice) {
-        self.bulletin = self.bulletin.next(self.id, Shared::new(notice));
     }
 
     /// The identity of the next notice on the mission if this robot issues it.

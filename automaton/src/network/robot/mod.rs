@@ -29,6 +29,7 @@ mod exchanges;
 mod facts;
 mod hearing;
 mod judging;
+mod knowledge;
 mod leader;
 mod lineage;
 mod links;
@@ -54,6 +55,7 @@ mod target;
 mod team;
 #[cfg(test)]
 mod tests;
+mod tree_place;
 mod view;
 mod way;
 mod yielding;
@@ -61,7 +63,7 @@ mod yielding;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Anchor, Confirmation, IdSet, NodeId, NoticeId, Post, PostId, Role};
+use pleach_discrete::network::{NodeId, NoticeId, Post, PostId, Role};
 
 #[cfg(feature = "abstraction")]
 pub(super) use abstraction::Numbers;
@@ -80,15 +82,12 @@ pub use team::SATURATED;
 pub use view::RobotView;
 
 use crate::automaton::TransitionError;
-use crate::located::Current;
 
-use super::beacon::{Announced, Announcement, Beacon, Branch, Bulletin, Notice};
+use super::beacon::{Announcement, Beacon, Notice};
 use super::duty::{Duty, Held, Standby, Station};
 use super::member::NodeOutputs;
 use super::message::Message;
-use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
-use super::shared::Shared;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use ballot::Ballot;
@@ -100,7 +99,7 @@ use duty_cell::DutyCell;
 use exchanges::Exchanges;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
-use lineage::HeardWay;
+use knowledge::Knowledge;
 use membership::Membership;
 use navigation::Navigation;
 use negotiation::Negotiation;
@@ -112,6 +111,7 @@ use revision::Changes;
 use routing::{Receiver, Routing, Survey};
 use schedule::Schedule;
 use team::Team;
+use tree_place::TreePlace;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
 const FIRST_NEW_POST: u32 = 1 << 31;
@@ -134,8 +134,6 @@ pub struct Robot {
     schedule: Schedule,
 
     changes: Changes,
-    /// Another parent would be better, and is not confirmed yet.
-    awaits_confirmation: bool,
 
     id: NodeId,
     outbox: Outbox,
@@ -145,57 +143,16 @@ pub struct Robot {
     routing: Routing,
     reservation: Reservation,
 
-    branches: Arc<Vec<Branch>>,
-
     // Where it is in its automata, and what the duty automaton jumps together with.
     duty: DutyCell,
-    mission: Current<Mission>,
+    mission: Knowledge,
     facts: Facts,
 
     exchanges: Exchanges,
 
-    // Its place in the tree.
-    parent: Option<NodeId>,
-    place: Current<PlaceInTree>,
-    heard_way: HeardWay,
-    /// It has been given the post of another robot in this jump.
-    is_displaced: bool,
-    below: Arc<IdSet>,
-    strays: Arc<IdSet>,
-    serves: Arc<IdSet>,
-    /// The tasks that are over, as far as it has heard.
-    closed: Arc<IdSet>,
-    /// The parent in the tree that it has found to be best, none if it has looked for none.
-    desired_parent: Option<Option<Anchor>>,
-    /// The node that p₁ finds to be a better parent.
-    reattaches_to: Option<NodeId>,
-    /// How recently the way from its post has been confirmed.
-    confirmation: Confirmation,
-    can_detach: bool,
-    unused_periods: u32,
-    orphaned_periods: u32,
-
-    // What it knows of the mission.
-    bulletin: Bulletin,
-    /// The epoch of the notices that it goes by.
-    epoch: u32,
-    announced: Option<Announced>,
-    /// The announcement by which it has reached its task.
-    accomplished: Option<NoticeId>,
-    /// The robots that have elected by this announcement and restarted since.
-    forgetful: Arc<IdSet>,
-    /// Where the leader goes: the point of 𝒲_f nearest to the task announced of those to which a way leads from where
-    /// the robot has learnt of it.
-    target: Option<Point>,
+    tree: TreePlace,
     ballot: Ballot,
     team: Team,
-    /// The access point in whose tree the leader of its team was elected, if there are several.
-    led_from: Option<usize>,
-    /// Whether a team has found no robot that can be recruited.
-    stretched: bool,
-    /// For how many rounds news may be under way, as far as it has heard.
-    longest_wait: usize,
-
     // Motion.
     navigation: Navigation,
     negotiation: Negotiation,
@@ -217,37 +174,13 @@ impl Robot {
             membership: Membership::default(),
             body: Body::at(position, site.settings.period),
             duty: DutyCell::new(Duty::Standby(Standby(Held { station, left: None }))),
-            mission: Current::new(Mission::Idle(Idle)),
+            mission: Knowledge::default(),
             facts: Facts::default(),
             exchanges: Exchanges::default(),
             neighbours: Neighbours::default(),
-            branches: Arc::default(),
-            parent: None,
-            place: Current::new(PlaceInTree::Detached(lineage::Detached)),
-            heard_way: HeardWay::NoParent,
-            is_displaced: false,
-            below: Arc::new(IdSet::singleton(id)),
-            strays: Arc::default(),
-            serves: Arc::default(),
-            closed: Arc::default(),
-            desired_parent: None,
-            reattaches_to: None,
-            confirmation: Confirmation::default(),
-            awaits_confirmation: false,
-            can_detach: false,
-            unused_periods: 0,
-            orphaned_periods: 0,
-            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
-            epoch: 0,
-            announced: None,
-            accomplished: None,
-            forgetful: Arc::default(),
-            target: None,
+            tree: TreePlace::alone(id),
             ballot: Ballot::default(),
             team: Team::default(),
-            led_from: None,
-            stretched: false,
-            longest_wait: 0,
             routing: Routing::new(site.settings.routing_method),
             reservation: Reservation::default(),
             navigation: Navigation::default(),
@@ -340,34 +273,35 @@ impl Robot {
     }
 
     fn public_state(&self) -> Beacon {
+        let [below, strays, serves] = self.tree.reports();
         Beacon {
             sender: self.id,
             position: self.body.position(),
-            bulletin: self.bulletin.clone(),
-            announced: self.announced.clone(),
-            forgetful: Arc::clone(&self.forgetful),
+            bulletin: self.mission.bulletin().clone(),
+            announced: self.mission.announced().cloned(),
+            forgetful: Arc::clone(self.mission.forgetful()),
             election: self.ballot.election().cloned(),
             agreement: self.ballot.agreement().cloned(),
             route: self.ballot.route().cloned(),
             crossing: Vec::new(),
             lineage: self.lineage().cloned(),
-            parent: self.parent,
-            below: Arc::clone(&self.below),
-            strays: Arc::clone(&self.strays),
-            serves: Arc::clone(&self.serves),
-            closed: Arc::clone(&self.closed),
+            parent: self.tree.parent(),
+            below: Arc::clone(below),
+            strays: Arc::clone(strays),
+            serves: Arc::clone(serves),
+            closed: Arc::clone(self.mission.closed()),
             duty: Some(*self.duty),
             parked: self.is_parked(),
             way: self.way_asked_for(),
-            can_detach: self.can_detach,
+            can_detach: self.tree.can_detach(),
             offer: self.offers().offer().cloned(),
             offers_made: self.offers().offers_made(),
             reply: self.offers().reply().cloned(),
             team: self.team.report(),
-            stretched: self.stretched,
+            stretched: self.mission.is_stretched(),
             longest_wait: self.longest_wait(),
             wrecks: Arc::clone(self.membership.wrecks()),
-            branches: Arc::clone(&self.branches),
+            branches: Arc::clone(self.tree.branches()),
         }
     }
 
@@ -378,17 +312,17 @@ impl Robot {
 
     /// The newest notice on the mission that it knows.
     pub(super) fn notice(&self) -> &Notice {
-        self.bulletin.notice()
+        self.mission.bulletin().notice()
     }
 
     /// The identity of the newest notice on the mission that it knows.
     pub(super) fn notice_id(&self) -> NoticeId {
-        self.bulletin.id()
+        self.mission.bulletin().id()
     }
 
     /// The announcement that it goes by.
     pub(super) fn announcement(&self) -> Option<&Announcement> {
-        self.announced.as_ref().map(|(_, announcement)| &**announcement)
+        self.mission.announcement()
     }
 
     /// The task announced last, as far as it knows.
@@ -400,7 +334,7 @@ impl Robot {
     fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.outbox.send_beacon_again();
         let counted = |robot: &Self| {
-            (robot.unused_periods, robot.orphaned_periods, robot.exchanges.partner())
+            (robot.tree.unused_periods(), robot.tree.orphaned_periods(), robot.exchanges.partner())
         };
         let before = counted(self);
         self.count_unused_periods();

@@ -144,7 +144,7 @@ impl Robot {
         standstill: Option<Standstill>,
         ahead: bool,
     ) -> RecruitElection {
-        RecruitElection { before, standstill, ahead, stretched: self.stretched }
+        RecruitElection { before, standstill, ahead, stretched: self.mission.is_stretched() }
     }
 
     /// Whether a recruit has been called for ahead of a standstill, and it learns now that the team goes on as it
@@ -152,7 +152,8 @@ impl Robot {
     pub(super) fn learns_that_call_is_vain(&self) -> bool {
         let went_on_alone = matches!(*self.notice(), Notice::Advance { joined: None });
         let election = self.mission.recruit_election();
-        went_on_alone && election.is_some_and(|election| election.stretched == self.stretched)
+        went_on_alone
+            && election.is_some_and(|election| election.stretched == self.mission.is_stretched())
     }
 
     /// Its task as it is announced again where no robot of its tree can come:
@@ -168,20 +169,20 @@ impl Robot {
         let known = self.announcement().filter(|known| known.last_resort.is_none())?;
         let own_root = self.lineage().map(|lineage| lineage.root());
         // Its team may be in another tree by now.
-        let have_been_asked = [own_root, self.led_from];
+        let have_been_asked = [own_root, self.mission.led_from()];
         let others: IdSet =
             known.eligible.iter().filter(|&root| !have_been_asked.contains(&Some(root))).collect();
         let is_any_disconnected = self.ballot.best().is_some();
         if is_any_disconnected && others.len() < known.eligible.len() && !others.is_empty() {
             return Some(Announcement { eligible: Arc::new(others), ..known.clone() });
         }
-        let since_stretched = self.stretched && !known.stretched;
+        let since_stretched = self.mission.is_stretched() && !known.stretched;
         let is_near_other_tree = standstill.is_some_and(|team| team.near_other_tree);
         let aids_other_tree = is_near_other_tree && (!known.again || since_stretched);
         (aids_other_tree || is_any_disconnected && since_stretched).then(|| Announcement {
             eligible: self.site.all_access_points(),
             again: known.again || aids_other_tree,
-            stretched: known.stretched || self.stretched,
+            stretched: known.stretched || self.mission.is_stretched(),
             ..known.clone()
         })
     }
@@ -235,7 +236,7 @@ impl Robot {
     fn could_stretch(&self) -> bool {
         let calls_for_length =
             matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
-        calls_for_length && !self.stretched
+        calls_for_length && !self.mission.is_stretched()
     }
 
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
@@ -268,7 +269,7 @@ impl Robot {
     pub(super) fn answer_call(&mut self) {
         let id = self.notice_id();
         // One that has restarted may have answered already: the task is announced again.
-        if !self.ballot.is_of(id) || self.forgetful.contains(self.id) {
+        if !self.ballot.is_of(id) || self.mission.forgetful().contains(self.id) {
             return;
         }
         if !self.knows_route() {
@@ -350,7 +351,7 @@ impl Robot {
     /// For how many rounds news may be under way, by the deepest place in a tree that it has heard of.
     pub(super) fn longest_wait(&self) -> usize {
         let depth = self.lineage().map_or(0, |way| way.hops());
-        self.longest_wait.max(self.site.rounds_across(depth))
+        self.mission.longest_wait().max(self.site.rounds_across(depth))
     }
 
     /// The way to the caller, through a tree neighbour that knows one; where the trees of two

@@ -40,10 +40,10 @@ impl Robot {
             && matches!(*self.duty, Standby(_) | Relay(_) | Junction(_) | Leaf(_))
             && self.changes.is_quiet()
             && !self.duty.is_late()
-            && !self.awaits_confirmation
+            && !self.tree.awaits_confirmation()
             && self.navigation.waypoint().is_none()
             && !self.body.is_moving()
-            && self.orphaned_periods == 0
+            && self.tree.orphaned_periods() == 0
             && self.membership.is_complete()
             && self.neighbours.have_all_been_heard_lately(self.schedule.period())
     }
@@ -96,13 +96,10 @@ impl Robot {
             "links of the tree": now.stretched, then.stretched;
             "longest wait": now.longest_wait, then.longest_wait;
             "team": self.team, before.team;
-            "mission": self.mission, before.mission;
+            "mission": self.mission.current(), before.mission.current();
             "lineage": now.lineage, then.lineage;
             "parent": now.parent, then.parent;
-            "parent that it looks for": self.desired_parent, before.desired_parent;
-            "parent that it finds better": self.reattaches_to, before.reattaches_to;
-            "wait for a confirmation": self.awaits_confirmation, before.awaits_confirmation;
-            "confirmation": self.confirmation, before.confirmation;
+            "parent that it looks for": self.tree.search(), before.tree.search();
             "robots below": now.below, then.below;
             "strays": now.strays, then.strays;
             "robots that have forgotten": now.forgetful, then.forgetful;

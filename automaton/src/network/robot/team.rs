@@ -172,7 +172,7 @@ impl Robot {
     /// has been dissolved since.
     fn hears_follower(&self, own: PostId) -> bool {
         let follows = |post: &Post| post.kind == PostKind::Primary { follows: Some(own) };
-        let own_team = self.announced.as_ref().map(|(id, _)| *id);
+        let own_team = self.mission.announcement_id();
         let is_of_another = |neighbour: &Neighbour| {
             neighbour.beacon.announced.as_ref().is_some_and(|(id, _)| Some(*id) != own_team)
         };
@@ -233,7 +233,7 @@ impl Robot {
     /// ψ of the leader: its target or, where a robot has stopped there or one of another fleet rests, the place within δ
     /// of the task that is farthest from such robots.
     fn leader_goal(&self) -> Option<Point> {
-        let (target, task) = (self.target?, self.announcement()?.position);
+        let (target, task) = (self.mission.target()?, self.announcement()?.position);
         let radius = KEEP_OUT * self.clearance();
         let wrecks = self.keep_out_discs(radius);
         let keep_out: Vec<Disc> = wrecks.chain(self.discs_of_bodies(radius)).collect();
@@ -257,7 +257,8 @@ impl Robot {
     pub(super) fn reach(&self) -> f64 {
         let settings = &self.site.settings;
         let task = self.announcement().map(|announcement| announcement.position);
-        let gap = self.target.zip(task).map_or(0.0, |(target, task)| (target - task).norm());
+        let gap =
+            self.mission.target().zip(task).map_or(0.0, |(target, task)| (target - task).norm());
         let stand_off = settings.leash_radius() - STAND_OFF * self.clearance();
         let touch = TOUCH * self.clearance() + self.stray();
         stand_off.max(gap + touch).min(settings.arrival_radius())
@@ -309,7 +310,7 @@ impl Robot {
     /// and how many the team has: one for each member.
     pub(super) fn links_left(&self) -> Option<(f64, f64)> {
         let parent = self.neighbour_at(self.anchor()?)?;
-        let (target, members) = (self.target?, f64::from(self.team.report()?.members));
+        let (target, members) = (self.mission.target()?, f64::from(self.team.report()?.members));
         let (from, longest) = (parent.position(), self.longest_length());
         Some((self.site.links_between(from, target, longest, self.reach()), members))
     }
@@ -322,7 +323,7 @@ impl Robot {
 
     /// Geodesic distance to the place from which the announced task is serviced.
     pub(super) fn remaining(&self) -> f64 {
-        self.target.map_or(0.0, |target| self.site.distance(self.body.position(), target))
+        self.mission.target().map_or(0.0, |target| self.site.distance(self.body.position(), target))
     }
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.
@@ -358,7 +359,7 @@ impl Robot {
     /// none is left that could come, nobody has to.
     fn is_near_enough(&self) -> bool {
         let within = |distance: f64| distance <= self.site.settings.arrival_radius();
-        self.leads() && self.stretched && self.distance_to_task().is_some_and(within)
+        self.leads() && self.mission.is_stretched() && self.distance_to_task().is_some_and(within)
     }
 
     /// Whether it is bound to a post from which it can service the task that it leads to. In the paper's order it is

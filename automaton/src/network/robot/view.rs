@@ -91,7 +91,7 @@ impl<'a> RobotView<'a> {
 
     /// How often a task had been announced again before the announcement that it goes by.
     pub const fn epoch(self) -> u32 {
-        self.0.epoch
+        self.0.mission.epoch()
     }
 
     /// The task announced last, as far as it knows.
@@ -101,7 +101,7 @@ impl<'a> RobotView<'a> {
 
     /// The tasks that are over, as far as it knows.
     pub const fn closed(self) -> &'a Arc<IdSet> {
-        &self.0.closed
+        self.0.mission.closed()
     }
 
     /// Whether it is the elected leader, released or not.

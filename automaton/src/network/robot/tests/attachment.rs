@@ -12,7 +12,7 @@ use crate::network::scenario::Strategy;
 fn choice(robot: &mut Robot, heard: impl IntoIterator<Item = Beacon>) -> Option<Anchor> {
     heard.into_iter().for_each(|beacon| robot.hears(beacon));
     robot.keep_place().expect("its automaton goes on");
-    robot.desired_parent.expect("a redundant robot looks for a parent")
+    robot.tree.desired_parent().expect("a redundant robot looks for a parent")
 }
 
 const fn at(post: u32) -> Option<Anchor> {
@@ -139,13 +139,13 @@ fn a_way_that_a_robot_on_it_contradicts_does_not_count() {
 #[test]
 fn a_new_parent_has_to_be_confirmed_more_recently_than_what_was_passed_on() {
     let mut robot = robot();
-    robot.confirmation.take_over(7);
+    robot.tree.take_over_confirmation(7);
     let heard = Arc::new(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
     for (confirmed, awaits) in [(None, true), (Some(7), true), (Some(8), false)] {
         robot.hear_beacon(NOW, confirmed, &heard);
         robot.keep_place().expect("it goes on");
-        assert_eq!(robot.awaits_confirmation, awaits, "{confirmed:?}");
-        assert_eq!(robot.desired_parent, (!awaits).then_some(at(11)), "{confirmed:?}");
+        assert_eq!(robot.tree.awaits_confirmation(), awaits, "{confirmed:?}");
+        assert_eq!(robot.tree.desired_parent(), (!awaits).then_some(at(11)), "{confirmed:?}");
     }
 }
 
@@ -161,7 +161,7 @@ fn a_confirmation_is_passed_on_by_robots_that_keep_their_posts() {
         robot.pass_on_confirmation()
     };
     assert_eq!(passes_on(&|_| {}), Some(NOW - 1));
-    assert_eq!(passes_on(&|robot| robot.awaits_confirmation = true), None);
+    assert_eq!(passes_on(&|robot| robot.tree.desire(None, None, true)), None);
     let waits = |robot: &mut Robot| {
         let station = Station { post: fixed(20, 11), reference: HERE };
         let held = Held { station, left: None };
@@ -177,15 +177,15 @@ fn while_a_path_is_sought_only_robots_without_a_parent_look_for_one() {
     let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
     let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
     let mut free = robot();
-    free.mission = Current::new(Mission::Shift(shift.clone()));
+    free.mission.is(Mission::Shift(shift.clone()));
     assert!(free.tree_is_frozen());
     assert_eq!(choice(&mut free, [heard()]), at(11));
     let mut attached = robot();
-    attached.mission = Current::new(Mission::Shift(shift));
+    attached.mission.is(Mission::Shift(shift));
     attached.holds(redundant(0, 12));
     attached.hears(heard());
     attached.keep_place().expect("it goes on");
-    assert_eq!(attached.desired_parent, None);
+    assert_eq!(attached.tree.desired_parent(), None);
 }
 
 /// Robots that hold these posts are on Σ, which is split at its second place; its first subgroup has arrived.
@@ -205,7 +205,7 @@ fn second_subgroup_of(posts: [Post; 4]) -> Mission {
 impl Robot {
     /// The second subgroup of Σ has left its posts, robots 2 and 3.
     fn hears_second_subgroup_leave(&mut self, posts: [Post; 4]) {
-        self.mission = Current::new(second_subgroup_of(posts));
+        self.mission.is(second_subgroup_of(posts));
         for place in [1, 2] {
             let leaves = Duty::Shifting(Shifting { place, left: None });
             self.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });
@@ -219,7 +219,7 @@ fn a_robot_stands_for_the_post_that_the_one_ahead_has_left() {
     let may_set_out = |ahead: Duty, parent: Option<NodeId>| {
         let posts = [redundant(10, 11), redundant(11, 12), redundant(12, 13), fixed(13, 20)];
         let mut robot = robot();
-        robot.mission = Current::new(second_subgroup_of(posts));
+        robot.mission.is(second_subgroup_of(posts));
         let held = Held { station: Station { post: posts[1], reference: HERE }, left: None };
         let waiting = Waiting { held, place: 1, role: Role::Redundant };
         robot.duty.is(Duty::Waiting(waiting));
@@ -270,7 +270,7 @@ fn the_holder_of_the_post_above_is_no_parent_where_no_link_reaches() {
     let parent = |away: f64, before: Option<NodeId>| {
         let mut robot = robot();
         robot.holds(fixed(20, 13));
-        robot.parent = before;
+        robot.tree.attach_to(before);
         robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
         robot.tree_parent()
     };
@@ -286,11 +286,11 @@ fn a_post_follows_the_robot_that_it_is_linked_to_where_its_successor_is_out_of_r
     let desired = |successor: f64, linked: &[u32]| {
         let mut robot = robot();
         robot.holds(fixed(20, 13));
-        robot.parent = Some(5);
+        robot.tree.attach_to(Some(5));
         robot.hears(beacon(5, west(settled - 0.1), fixed(21, 13), linked));
         robot.hears(beacon(6, west(successor), fixed(13, 14), &[13, 14]));
         robot.keep_place().expect("it goes on");
-        robot.desired_parent
+        robot.tree.desired_parent()
     };
     assert_eq!(desired(settled + LITTLE, &[21, 13, 14]), Some(at(21)));
     assert_eq!(desired(settled - LITTLE, &[21, 13, 14]), None, "the successor is its parent");
@@ -311,7 +311,7 @@ fn orphan_with(duty: fn(Held) -> Duty, periods: u32, heard: Beacon) -> Option<Op
     robot.hears(heard);
     (0..periods).for_each(|_| robot.count_orphaned_periods());
     robot.keep_place().expect("it goes on");
-    robot.desired_parent
+    robot.tree.desired_parent()
 }
 
 #[test]
@@ -347,7 +347,7 @@ fn orphan_of_access_point(periods: u32, root: usize) -> Option<Option<Anchor>> {
     robot.hears(Beacon { lineage, ..beacon(1, east(0.5), fixed(11, 13), &[]) });
     (0..periods).for_each(|_| robot.count_orphaned_periods());
     robot.keep_place().expect("it goes on");
-    robot.desired_parent
+    robot.tree.desired_parent()
 }
 
 #[test]
@@ -367,12 +367,12 @@ fn periods_without_a_parent_are_counted_from_the_last_one_with_it() {
     let mut robot = robot();
     robot.holds(fixed(20, 11));
     (0..5).for_each(|_| robot.count_orphaned_periods());
-    assert_eq!(robot.orphaned_periods, 5);
+    assert_eq!(robot.tree.orphaned_periods(), 5);
     assert!(robot.is_orphan());
     robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
     assert!(!robot.is_orphan());
     robot.count_orphaned_periods();
-    assert_eq!(robot.orphaned_periods, 0);
+    assert_eq!(robot.tree.orphaned_periods(), 0);
 }
 
 /// Nobody waits for it to be relieved by a robot that only remembers its parent.
@@ -381,7 +381,7 @@ fn a_post_that_is_attached_to_none_has_no_parent_in_the_end() {
     let mut robot = robot();
     robot.holds(Post { parent: None, ..fixed(20, 0) });
     robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
-    robot.parent = Some(1);
+    robot.tree.attach_to(Some(1));
     let parents = (0..6).map(|_| {
         robot.count_orphaned_periods();
         robot.tree_parent()
@@ -414,7 +414,7 @@ fn reattached(node: Beacon) -> Option<Option<Anchor>> {
     robot.hears(beacon(1, west(1.0), fixed(11, 13), &[11, 13]));
     robot.hears(node);
     robot.keep_place().expect("it goes on");
-    robot.desired_parent
+    robot.tree.desired_parent()
 }
 
 #[test]
@@ -446,7 +446,7 @@ fn of_nodes_nearer_to_the_task_the_nearest_counts() {
         robot.hears(beacon(id, east(away), fixed(number, 19), &[number, 19]));
     }
     robot.keep_place().expect("it goes on");
-    assert_eq!((robot.desired_parent, robot.reattaches_to), (Some(at(13)), Some(3)));
+    assert_eq!((robot.tree.desired_parent(), robot.tree.reattaches_to()), (Some(at(13)), Some(3)));
 }
 
 #[test]
@@ -457,7 +457,7 @@ fn a_member_with_a_follower_keeps_its_parent() {
     robot.hears(beacon(1, west(1.0), primary(11, Some(30), 13), &[11, 13]));
     robot.hears(beacon(2, east(0.5), fixed(12, 13), &[12, 13]));
     robot.keep_place().expect("it goes on");
-    assert_eq!(robot.desired_parent, None);
+    assert_eq!(robot.tree.desired_parent(), None);
 }
 
 #[test]
@@ -471,7 +471,7 @@ fn the_follower_attaches_to_the_newcomer_as_soon_as_the_link_may_be_made() {
         robot.hears(beacon(1, west(1.0), fixed(11, 13), &[11, 13]));
         robot.hears(beacon(2, west(away), primary(40, Some(30), 11), &[40, 11, 13]));
         robot.keep_place().expect("it goes on");
-        assert_eq!(robot.desired_parent, expected, "{away}");
+        assert_eq!(robot.tree.desired_parent(), expected, "{away}");
     }
 }
 
@@ -509,7 +509,7 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
         let mut robot = node();
         change(&mut robot);
         (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| robot.count_unused_periods());
-        (robot.unused_periods, robot.changes.is_quiet())
+        (robot.tree.unused_periods(), robot.changes.is_quiet())
     };
     assert_eq!(count(&|_| {}), (2, false));
     assert_eq!(count(&|robot| robot.holds(redundant(20, 13))), (0, true));
@@ -519,7 +519,7 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
     let frozen = |robot: &mut Robot| {
         let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
         let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
-        robot.mission = Current::new(Mission::Shift(shift));
+        robot.mission.is(Mission::Shift(shift));
     };
     assert_eq!(count(&frozen), (0, true));
     let mut once = node();
@@ -527,7 +527,7 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
     assert!(once.changes.is_quiet(), "once is not for long");
     let mut cut_off = cut_off();
     (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| cut_off.count_unused_periods());
-    assert_eq!(cut_off.unused_periods, 0, "its branches may be cut off from it as well");
+    assert_eq!(cut_off.tree.unused_periods(), 0, "its branches may be cut off from it as well");
 }
 
 /// Nodes that the last task has left without a branch become redundant meanwhile, and can come then.
@@ -538,9 +538,11 @@ fn a_bound_leader_waits_for_nodes_to_retire_before_it_calls() {
         scenario.control.strategy = Some(strategy);
         let mut robot = robot_of(&scenario);
         robot.advances_to(east(3.0));
-        let (id, known) = robot.announced.clone().expect("it knows the task");
-        robot.announced =
-            Some((id, Shared::new(Announcement { before: before.into(), ..(*known).clone() })));
+        let (id, known) = robot.mission.announced().cloned().expect("it knows the task");
+        robot.mission.goes_by(Some((
+            id,
+            Shared::new(Announcement { before: before.into(), ..(*known).clone() }),
+        )));
         let held = Held { station: Station { post: fixed(20, 13), reference: HERE }, left: None };
         robot.duty.is(Duty::Bound(Bound(held)));
         (0..9)
@@ -564,7 +566,7 @@ fn a_redundant_robot_can_detach_if_another_way_does_not_lead_over_its_parent() {
         robot.hears(beacon(1, west(0.5), redundant(11, 13), &[11, 13]));
         robot.hears(other);
         robot.look_after_place().expect("it goes on");
-        robot.can_detach
+        robot.tree.can_detach()
     };
     assert!(detaches(beacon(2, east(0.5), fixed(12, 13), &[12, 13])));
     assert!(!detaches(beacon(2, east(0.5), redundant(12, 11), &[12, 11, 13])));
@@ -572,10 +574,10 @@ fn a_redundant_robot_can_detach_if_another_way_does_not_lead_over_its_parent() {
     let own = Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) };
     rooted.holds(own);
     rooted.look_after_place().expect("it goes on");
-    assert!(rooted.can_detach, "access points stay");
+    assert!(rooted.tree.can_detach(), "access points stay");
     rooted.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(0, 0) });
     rooted.look_after_place().expect("it goes on");
-    assert!(!rooted.can_detach, "a fixed post keeps its parent");
+    assert!(!rooted.tree.can_detach(), "a fixed post keeps its parent");
 }
 
 #[test]
@@ -595,14 +597,14 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
         Beacon { below: set(&[5]), ..beacon(5, south(0.5), redundant(15, 13), &[15, 13, 14]) };
     robot.hears(other);
     robot.look_after_place().expect("it goes on");
-    assert_eq!(*robot.below, *set(&[0, 2, 4]), "itself and what its children report");
-    assert_eq!(*robot.strays, *set(&[3]), "one that knows no way");
-    assert_eq!(*robot.serves, *set(&[1, 3]));
-    assert_eq!(robot.parent, Some(1));
+    assert_eq!(**robot.tree.reports()[0], *set(&[0, 2, 4]), "itself and what its children report");
+    assert_eq!(**robot.tree.reports()[1], *set(&[3]), "one that knows no way");
+    assert_eq!(**robot.tree.reports()[2], *set(&[1, 3]));
+    assert_eq!(robot.tree.parent(), Some(1));
     // One that has not been heard in this period or the one before is not reported.
     robot.schedule.is_in(NOW + 2);
     robot.look_after_place().expect("it goes on");
-    assert_eq!((&*robot.below, &*robot.strays), (&*set(&[0]), &*set(&[])));
+    assert_eq!((&**robot.tree.reports()[0], &**robot.tree.reports()[1]), (&*set(&[0]), &*set(&[])));
 }
 
 /// A way is kept while the parent is not heard, until the robot is gone: then it counts as one that knows none, and
@@ -639,7 +641,7 @@ fn a_robot_on_its_way_along_sigma_reports_robots_that_know_no_way() {
         robot.duty.is(duty);
         robot.hears(beacon(3, north(0.5), redundant(16, 17), &[]));
         robot.look_after_place().expect("it goes on");
-        IdSet::clone(&robot.strays)
+        IdSet::clone(robot.tree.reports()[1])
     };
     assert_eq!(strays(Duty::Shifting(Shifting { place: 0, left: None })), IdSet::singleton(3));
     let detached = holding(redundant(0, 11), HERE);

@@ -77,7 +77,7 @@ fn nothing_is_foreseen_while_p1_may_come_to_attach_elsewhere() {
 fn caller(ahead: bool) -> Robot {
     let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
     robot.is_told(Notice::Call { caller: 0, releases_leader: false });
-    robot.stretched = true;
+    robot.mission.stretches(true);
     robot.seeks_recruit(ahead, true);
     let mut election = Election::new(robot.notice_id());
     (0..ROBOTS).for_each(|other| election.place(other, None));
@@ -119,7 +119,7 @@ fn a_team_whose_links_have_been_stretched_calls_ahead_again() {
         let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
         robot.is_told(Notice::Call { caller: 1, releases_leader: false });
         robot.seeks_recruit(false, stretched_before);
-        robot.stretched = true;
+        robot.mission.stretches(true);
         robot.is_told(Notice::Advance { joined: None });
         assert_eq!(next_phase(&mut robot), Phase::Advance);
         robot.mission.has_called_in_vain()
@@ -166,7 +166,7 @@ fn p1_attaches_to_a_newcomer_that_it_hears() {
             robot.end_round();
         }
         robot.keep_place().expect("it goes on");
-        robot.desired_parent == Some(Some(Anchor::Post(PostId(40))))
+        robot.tree.desired_parent() == Some(Some(Anchor::Post(PostId(40))))
     };
     assert!(attaches(Strategy::Eager, false));
     assert!(!attaches(Strategy::Eager, true));
@@ -185,7 +185,7 @@ fn a_newcomer_looks_for_p1_where_that_is_attached() {
         let caller = Hop { robot: 1, post, place, crossing: Vec::new() };
         let path = Path { hops: vec![caller], releases_leader: false };
         let advance = Advance { path: Some(Arc::new(path)), in_vain: false };
-        robot.mission = Current::new(Mission::Advance(advance));
+        robot.mission.is(Mission::Advance(advance));
         robot.team_goal()
     };
     assert_eq!(goal(Strategy::Paper), Some(north(3.0)));
@@ -206,7 +206,7 @@ fn a_robot_on_its_way_takes_the_post_ahead_whatever_follows_the_advance() {
         let path = Arc::new(Path { hops, releases_leader: false });
         robot.advances_to(east(3.0));
         let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
-        robot.mission = Current::new(Mission::Shift(shift));
+        robot.mission.is(Mission::Shift(shift));
         robot.duty.is(Duty::Shifting(Shifting { place: 0, left: None }));
         let mut agreement = Agreement::new(robot.notice_id());
         agreement.arrive(0);
@@ -237,7 +237,7 @@ fn the_first_of_the_team_keeps_its_parent_until_it_is_attached_to_the_newcomer()
         robot.hears(beacon(2, east(0.5), fixed(12, 13), &[12, 13]));
         newcomer.into_iter().for_each(|beacon| robot.hears(beacon));
         robot.keep_place().expect("it goes on");
-        robot.desired_parent.flatten()
+        robot.tree.desired_parent().flatten()
     };
     let at = |post| Some(Anchor::Post(PostId(post)));
     let newcomer = |away| Some(beacon(3, west(away), primary(40, None, 11), &[40, 11, 13]));

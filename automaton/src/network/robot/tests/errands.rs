@@ -51,7 +51,7 @@ fn a_team_whose_task_is_taken_back_is_dissolved() {
     robot.holds(primary(0, None, 1));
     robot.advances_to(east(3.0));
     let notice = Shared::new(Notice::Withdrawn { task: 0 });
-    robot.bulletin = robot.bulletin.superseding(ROBOTS, notice);
+    robot.mission.is_told(robot.mission.bulletin().superseding(ROBOTS, notice));
     robot.measures();
     assert!(robot.jump_mission().expect("guards have values"));
     assert_eq!((robot.phase(), robot.duty.location()), (Phase::Idle, Activity::Relay));
@@ -65,11 +65,11 @@ fn after_the_end(notice: Notice) -> Phase {
     let mut robot = robot();
     robot.holds(redundant(0, 0));
     let end = Notice::Ended { outcome: Outcome::Blocked, reason: Arc::default(), task: Some(0) };
-    robot.bulletin = robot.bulletin.next(1, Shared::new(end));
+    robot.mission.is_told(robot.mission.bulletin().next(1, Shared::new(end)));
     robot.measures();
     assert!(robot.jump_mission().expect("guards have values"));
     assert_eq!(robot.phase(), Phase::Ended);
-    robot.bulletin = robot.bulletin.superseding(ROBOTS, Shared::new(notice));
+    robot.mission.is_told(robot.mission.bulletin().superseding(ROBOTS, Shared::new(notice)));
     robot.measures();
     robot.jump_mission().expect("guards have values");
     robot.phase()

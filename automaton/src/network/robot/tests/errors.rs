@@ -100,7 +100,7 @@ fn a_parent_is_kept_as_far_off_as_both_may_stray() {
         robot.holds(redundant(0, 11));
         robot.hears(beacon(1, east(length), fixed(11, 13), &[11, 13]));
         robot.keep_place().expect("it goes on");
-        robot.desired_parent == Some(Some(Anchor::Post(PostId(11))))
+        robot.tree.desired_parent() == Some(Some(Anchor::Post(PostId(11))))
     };
     let robot = unsure();
     let limit = robot.hard_length() + 2.0 * robot.stray();
@@ -119,7 +119,7 @@ fn shifting(gap: f64, arrived: bool) -> Robot {
     let hops = vec![hop(0, west(1.0)), hop(1, east(1.0)), hop(2, east(2.0)), hop(3, east(3.0))];
     let path = Arc::new(Path { hops, releases_leader: false });
     let subgroups = pleach_discrete::network::path::subgroups(&[0, 3]).collect();
-    robot.mission = Current::new(Mission::Shift(Shift { path, subgroups, arrived: 0 }));
+    robot.mission.is(Mission::Shift(Shift { path, subgroups, arrived: 0 }));
     robot.duty.is(Duty::Shifting(Shifting { place: 0, left: None }));
     let mut agreement = pleach_discrete::network::Agreement::new(robot.notice_id());
     if arrived {
@@ -133,10 +133,10 @@ fn shifting(gap: f64, arrived: bool) -> Robot {
 
 /// Another path for a robot that is on its way along one.
 fn change_path(robot: &mut Robot, change: impl FnOnce(&mut Path)) {
-    let Mission::Shift(shift) = &*robot.mission else { panic!("it is on its way") };
+    let Mission::Shift(shift) = &**robot.mission.current() else { panic!("it is on its way") };
     let mut shift = shift.clone();
     change(Arc::make_mut(&mut shift.path));
-    robot.mission = Current::new(Mission::Shift(shift));
+    robot.mission.is(Mission::Shift(shift));
 }
 
 /// Eq. (26): within δ of its place, or right behind the next of its subgroup that has arrived.
@@ -240,7 +240,7 @@ fn a_recruit_goes_by_way_of_the_access_points_that_its_path_passes() {
             path.hops[1].place = PathPlace { reference: ahead, position: ahead };
         });
         robot.body.is_at(from);
-        robot.parent = Some(parent);
+        robot.tree.attach_to(Some(parent));
         robot.measures();
         (robot.goal(), robot.named_parent())
     };
@@ -285,8 +285,8 @@ fn a_path_that_is_given_up_leaves_each_robot_a_post_of_its_own() {
         robot.duty.is(Duty::Shifting(Shifting { place, left: left.map(PostId) }));
         let agreement = &mut robot.ballot;
         reported.iter().for_each(|&place| agreement.arrive(place));
-        if let Mission::Shift(shift) = &*robot.mission {
-            robot.mission = Current::new(Mission::Shift(Shift { arrived, ..shift.clone() }));
+        if let Mission::Shift(shift) = &**robot.mission.current() {
+            robot.mission.is(Mission::Shift(Shift { arrived, ..shift.clone() }));
         }
         assert_eq!(robot.coming_post().map(|post| post.id), Some(PostId(place as u32 + 1)));
         robot.duty.jump_with(Label::Mission(MissionStep::Announced));
@@ -364,7 +364,7 @@ fn a_link_that_is_far_too_long_truly_gets_no_longer() {
         let mut robot = unsure();
         robot.holds(fixed(20, 13));
         robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
-        robot.parent = Some(5);
+        robot.tree.attach_to(Some(5));
         robot.negotiation.begin();
         if other > 0.0 {
             robot.hear_proposal(5, Segment { from: west(length), to: west(length - other) }, None);

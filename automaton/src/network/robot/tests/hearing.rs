@@ -221,10 +221,10 @@ fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_con
         assert!(!is_news(&mut robot, now + 1, None, hint), "heard in the period before");
         assert!(is_news(&mut robot, now + 3, None, hint), "it was absent");
         assert!(!is_news(&mut robot, now + 3, Some(now), hint), "nothing awaits it");
-        robot.awaits_confirmation = true;
+        robot.tree.desire(None, None, true);
         assert!(!is_news(&mut robot, now + 3, Some(now), hint), "it is not newer");
         assert!(is_news(&mut robot, now + 3, Some(now + 1), hint));
-        robot.awaits_confirmation = false;
+        robot.tree.desire(None, None, false);
         let known = robot.neighbour(1).expect("it is heard");
         assert_eq!((known.confirmed, known.heard_in), (Some(now + 1), now + 3));
         assert!(!is_news(&mut robot, now + 3, Some(now), hint));
@@ -363,7 +363,7 @@ fn a_robot_deliberates_anew_in_a_period_where_something_may_have_changed() {
         robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(20, 0) });
         robot.schedule.count_rounds_anew();
         robot.end_round();
-        robot.parent = robot.tree_parent();
+        robot.remember_parent();
         robot.process_messages().expect("guards have values");
         robot.measures();
         robot.changes.settle();

@@ -27,7 +27,6 @@ use serde_json::json;
 
 use super::Robot;
 use super::neighbours::Neighbours;
-use crate::located::Current;
 use crate::network::beacon::{Announcement, Beacon, Notice};
 use crate::network::duty::{
     Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station,
@@ -189,16 +188,16 @@ impl Robot {
 
     /// The primary team is the active team, and goes to the task at `place`.
     fn advances_to(&mut self, place: Point) {
-        self.mission = Current::new(Mission::Advance(Advance { path: None, in_vain: false }));
+        self.mission.is(Mission::Advance(Advance { path: None, in_vain: false }));
         self.knows_task(place);
-        self.target = Some(place);
+        self.mission.leads_to(place);
     }
 
     /// A recruit is sought, and this robot has called for it ahead of a standstill or not at all; links had been
     /// stretched before, or not.
     fn seeks_recruit(&mut self, ahead: bool, stretched: bool) {
         let election = RecruitElection { before: None, standstill: None, ahead, stretched };
-        self.mission = Current::new(Mission::RecruitElection(election));
+        self.mission.is(Mission::RecruitElection(election));
     }
 
     /// The task announced is at `place`, and all take part.
@@ -214,19 +213,20 @@ impl Robot {
             last_resort: None,
         };
         let announcement = Shared::new(announcement);
-        self.announced = Some((self.notice_id(), announcement));
+        self.mission.goes_by(Some((self.notice_id(), announcement)));
     }
 
     /// The task has been announced as a last resort.
     fn knows_last_resort(&mut self) {
-        let (id, known) = self.announced.clone().expect("it knows the task");
+        let (id, known) = self.mission.announced().cloned().expect("it knows the task");
         let last_resort = Some(Arc::new("too few".to_owned()));
-        self.announced = Some((id, Shared::new(Announcement { last_resort, ..(*known).clone() })));
+        self.mission
+            .goes_by(Some((id, Shared::new(Announcement { last_resort, ..(*known).clone() }))));
     }
 
     /// What it is told by the newest notice.
     fn is_told(&mut self, notice: Notice) {
-        self.bulletin = self.bulletin.next(1, Shared::new(notice));
+        self.mission.is_told(self.mission.bulletin().next(1, Shared::new(notice)));
     }
 
     /// It measures what its guards ask of it.

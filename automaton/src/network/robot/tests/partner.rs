@@ -276,7 +276,7 @@ fn parked_and_mover() -> (Robot, Beacon) {
     let duty = holding(primary(30, None, 13), west(BESIDE));
     let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
     mover.offer = Some(Offer { to: 0, number: 1, duty });
-    mover.announced = robot.announced.clone();
+    mover.announced = robot.mission.announced().cloned();
     (robot, mover)
 }
 
@@ -332,7 +332,7 @@ fn only_robots_on_a_way_hand_their_duty_over() {
     assert_eq!(partner(&mut posted), None);
     let mut resting = stuck(5);
     resting.hears(parked(BESIDE));
-    resting.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
+    resting.mission.is(Mission::Idle(super::super::super::mission::Idle));
     assert_eq!(partner(&mut resting), None, "the team does not move now");
     let mut follower = stuck(5);
     follower.hears(beacon(3, east(1.0), primary(31, None, 30), &[31, 30]));
@@ -348,7 +348,7 @@ fn a_team_that_goes_on_hands_over_to_parked_robots_that_are_not_of_it() {
         let mut robot = stuck_by(strategy, 5);
         let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
         let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
-        robot.mission = Current::new(Mission::Shift(shift));
+        robot.mission.is(Mission::Shift(shift));
         robot.hears(Beacon { parked: true, ..beacon(1, east(BESIDE), post, &[11, 13]) });
         partner(&mut robot)
     };
@@ -430,7 +430,7 @@ fn a_member_that_stands_behind_is_a_partner() {
         let duty = holding(primary(30, None, 31), west(BESIDE));
         let mut mover = beacon(1, west(BESIDE), primary(30, None, 31), &[30, 31, 13]);
         mover.offer = Some(Offer { to: 0, number: 1, duty });
-        (mover.announced, mover.team) = (robot.announced.clone(), report(1, 5));
+        (mover.announced, mover.team) = (robot.mission.announced().cloned(), report(1, 5));
         robot.hears(mover);
         robot.may_be_relieved()
     };
@@ -451,11 +451,11 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
     let away = |ways: f64| relieved(&|_, mover| mover.position = west(ways * CLEARANCE));
     assert!(away(4.0 - LITTLE) && !away(4.0 + LITTLE), "it is too far away");
     assert!(!relieved(&|_, mover| mover.announced = None), "it goes by no announcement");
-    assert!(!relieved(&|robot, _| robot.announced = None), "this one goes by none");
+    assert!(!relieved(&|robot, _| robot.mission.goes_by(None)), "this one goes by none");
     assert!(!relieved(&|robot, _| robot.facts.path_announced = true), "it has yet to learn Σ");
     let moves = |robot: &mut Robot, _: &mut Beacon| {
         robot.holds(primary(20, None, 13));
-        robot.mission = Current::new(Mission::Advance(Advance { path: None, in_vain: false }));
+        robot.mission.is(Mission::Advance(Advance { path: None, in_vain: false }));
     };
     assert!(!relieved(&moves), "it moves itself");
     let on_path = |_: &mut Robot, mover: &mut Beacon| {
@@ -470,7 +470,7 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
             robot.ballot.agree(mover.agreement.clone());
             let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
             let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
-            robot.mission = Current::new(phase(shift));
+            robot.mission.is(phase(shift));
         })
     };
     assert!(on_the_same(&Mission::Shift));

@@ -39,7 +39,7 @@ fn observers_see_a_robot_as_it_is() {
     robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
     robot.holds(primary(30, None, 13));
     robot.advances_to(east(3.0));
-    robot.epoch = 2;
+    robot.mission.is_of_epoch(2);
     robot.routing.leaves(0.5);
     robot.measures();
     let view = robot.view();
@@ -52,6 +52,6 @@ fn observers_see_a_robot_as_it_is() {
     assert!(view.facts().first && view.facts().distance == 3.0);
     let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
     let shift = Shift { path, subgroups: Arc::default(), arrived: 2 };
-    robot.mission = Current::new(Mission::Shift(shift));
+    robot.mission.is(Mission::Shift(shift));
     assert_eq!(robot.view().subgroups_done(), 2);
 }

@@ -22,7 +22,7 @@ fn choice(mut robot: Robot, heard: impl IntoIterator<Item = Beacon>) -> Option<A
     heard.into_iter().for_each(|beacon| robot.hears(beacon));
     robot.trace_lineage().expect("its automaton goes on");
     robot.keep_place().expect("its automaton goes on");
-    robot.desired_parent.flatten()
+    robot.tree.desired_parent().flatten()
 }
 
 const fn at(post: u32) -> Option<Anchor> {
@@ -135,7 +135,7 @@ fn the_post_of_a_bound_leader_is_attached_past_its_parent_too() {
 fn any_other_tree_will_do_once_links_are_as_long_as_they_get() {
     let is_near = |stretched: bool, root: usize| {
         let mut robot = holder(Strategy::Eager);
-        robot.stretched = stretched;
+        robot.mission.stretches(stretched);
         let extended =
             |way: Lineage, post: u32| way.extended_by(PostId(post)).expect("they differ");
         let way = [42, 41, 40].into_iter().fold(Lineage::of_access_point(root), extended);
@@ -180,6 +180,6 @@ fn no_post_is_attached_below_itself() {
         let mut robot = robot.clone();
         heard(posts).into_iter().for_each(|beacon| robot.hears(beacon));
         robot.keep_place().expect("its automaton goes on");
-        assert_eq!(robot.desired_parent.flatten(), chosen, "{posts:?}");
+        assert_eq!(robot.tree.desired_parent().flatten(), chosen, "{posts:?}");
     }
 }

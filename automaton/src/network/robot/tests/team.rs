@@ -47,7 +47,7 @@ fn the_first_of_the_team_is_followed_by_nobody() {
     robot.holds(fixed(30, 13));
     assert!(!robot.is_first(), "it is not of the team");
     let mut anew = leader();
-    let announced = anew.announced.clone().map(|(id, task)| (id.next(6), task));
+    let announced = anew.mission.announced().cloned().map(|(id, task)| (id.next(6), task));
     let of_before =
         Beacon { announced, ..beacon(2, west(0.5), primary(32, Some(30), 13), &[32, 13]) };
     anew.hears(of_before);
@@ -201,7 +201,7 @@ fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
     assert_eq!(follows(report(7, None, None), 9), behind(report(7, None, None)));
     assert_eq!(follows(report(7, Some(3), Some(2)), 5), behind(report(5, Some(3), Some(2))));
 
-    robot.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
+    robot.mission.is(Mission::Idle(super::super::super::mission::Idle));
     robot.review_team();
     assert_eq!(robot.team.report(), None, "the team does not move");
     let mut posted = leader();
@@ -270,7 +270,7 @@ fn a_link_of_the_tree_is_limited_by_what_hangs_on_it() {
     assert_eq!(limits, [(5, build), (1, build), (2, hard)]);
     robot.holds(fixed(30, 13));
     assert_eq!(robot.parent_link().map(|link| link.limit), Some(hard));
-    robot.stretched = true;
+    robot.mission.stretches(true);
     assert!(robot.hard_length() > hard && robot.build_length() > build);
 }
 
@@ -286,7 +286,7 @@ fn a_parent_that_is_not_heard_is_the_one_before() {
     assert_eq!(robot.tree_parent(), Some(1), "nobody holds post 11, and it is under way");
     robot.hears(beacon(1, east(0.5), redundant(31, 13), &[]));
     assert_eq!(robot.tree_parent(), Some(1), "another robot may have taken post 11 in an exchange");
-    robot.orphaned_periods = 4;
+    (0..4).for_each(|_| robot.tree.count_orphaned_period(true, 9));
     assert_eq!(robot.tree_parent(), None, "it has begun again");
     robot.neighbours = Neighbours::default();
     assert_eq!(robot.tree_parent(), None, "it is not heard");
@@ -353,7 +353,7 @@ fn a_service_that_has_been_superseded_is_announced_again() {
     let told = |has_reached: bool, notice: Notice| {
         let mut robot = robot();
         robot.knows_task(east(3.0));
-        robot.accomplished = has_reached.then_some(robot.notice_id());
+        robot.mission.has_accomplished(has_reached.then_some(robot.notice_id()));
         robot.is_told(notice);
         robot.measures();
         let jumps = robot.jump_mission().expect("its guards have values");
@@ -366,8 +366,8 @@ fn a_service_that_has_been_superseded_is_announced_again() {
     assert_eq!(told(true, Notice::Serviced { task: 0 }), (false, Phase::Idle, true));
     let mut robot = robot();
     robot.knows_task(east(3.0));
-    robot.accomplished = Some(robot.notice_id());
-    robot.bulletin = robot.bulletin.superseding(ROBOTS, Shared::new(Notice::Quiet));
+    robot.mission.has_accomplished(Some(robot.notice_id()));
+    robot.mission.is_told(robot.mission.bulletin().superseding(ROBOTS, Shared::new(Notice::Quiet)));
     robot.is_told(call());
     assert!(!robot.facts_now().service_unheard, "the task has been announced again since");
 }

@@ -99,11 +99,11 @@ fn where_branches_are_is_known_two_links_away() {
     bearer.hears(child);
     bearer.hears(beacon(4, west(0.5), redundant(24, 99), &[]));
     bearer.locate_branches();
-    assert_eq!(*bearer.branches, [Branch { robot: 3, place: east(1.5) }]);
-    let told = Arc::clone(&bearer.branches);
+    assert_eq!(**bearer.tree.branches(), [Branch { robot: 3, place: east(1.5) }]);
+    let told = Arc::clone(bearer.tree.branches());
     bearer.schedule.is_in(bearer.schedule.period() + 2);
     bearer.locate_branches();
-    assert!(bearer.branches.is_empty(), "it does not hear it any more");
+    assert!(bearer.tree.branches().is_empty(), "it does not hear it any more");
     let mut robot = robot();
     let told = Beacon { branches: told, ..beacon(5, east(0.5), fixed(20, 99), &[]) };
     robot.hears(told);
