@@ -46,6 +46,17 @@ impl Source {
         self.lines.iter().filter(|(_, line)| borrows(line)).map(|(number, _)| *number).collect()
     }
 
+    /// The lines that call `current_mut`, but for the body of a `current_mut`.
+    fn calls_of_current_mut(&self) -> Vec<String> {
+        let pairs = self.lines.windows(2).map(|pair| (&pair[0].1, &pair[1]));
+        let calls = pairs.filter(|(before, (_, line))| {
+            line.contains(".current_mut()") && !before.contains("fn current_mut(&mut self)")
+        });
+        calls
+            .map(|(_, (number, line))| format!("{}:{number}: {}", self.path, line.trim()))
+            .collect()
+    }
+
     /// The lines that contain one of `words`, as `path:line: text`.
     fn lines_with(&self, words: &[&str]) -> Vec<String> {
         let found = self.lines.iter().filter(|(_, line)| words.iter().any(|w| line.contains(w)));
@@ -231,7 +242,8 @@ fn every_file_of_tests_is_in_the_program_of_its_package() {
 
 /// Where an automaton of the network stands is changed by its resets alone: what holds a location
 /// with its data is private, is made where its owner is made, and is assigned to nowhere. The one
-/// way to change it, `current_mut`, is called by the resets of `located.rs` and by nothing else.
+/// way to change it, `current_mut`, is called by the resets of `located.rs` and by nothing else; that of a robot
+/// is that of one of its components.
 #[test]
 fn nothing_but_resets_changes_where_an_automaton_stands() {
     let sources = sources();
@@ -248,10 +260,7 @@ fn nothing_but_resets_changes_where_an_automaton_stands() {
     let changes: Vec<String> = fields
         .iter()
         .flat_map(|field| [format!(".{field} ="), format!(".{field}.clone_from(")])
-        .chain(
-            ["= Current::new(", "= Robot {", "current_mut(self)", ".current_mut()"]
-                .map(str::to_owned),
-        )
+        .chain(["= Current::new(", "= Robot {", "current_mut(self)"].map(str::to_owned))
         .collect();
     let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
     let offences = network().flat_map(|source| source.lines_with(&changes));
@@ -265,11 +274,11 @@ fn nothing_but_resets_changes_where_an_automaton_stands() {
         let borrowed = network().flat_map(|source| source.borrows_of(field)).count();
         assert!(borrowed <= 1, "`{field}` is borrowed to be changed in {borrowed} places");
     }
-    let callers: Vec<&Source> = sources
-        .iter()
-        .filter(|source| !source.lines_with(&[".current_mut()"]).is_empty())
-        .collect();
-    assert!(callers.iter().all(|source| source.path == "automaton/src/located.rs"));
+    let others = sources.iter().filter(|source| source.path != "automaton/src/located.rs");
+    assert_none(
+        others.flat_map(Source::calls_of_current_mut).collect(),
+        "only resets, and `current_mut` itself, call `current_mut`",
+    );
 }
 
 #[test]
@@ -295,4 +304,70 @@ fn only_those_who_report_times_read_the_clock() {
         .flat_map(|source| source.lines_with(&["std::time", "Instant::now", "SystemTime"]))
         .collect();
     assert_none(offences, "the result of a run does not depend on the time of day");
+}
+
+/// A struct of the sources: its file, and its fields, each as `name: Type`.
+struct Struct {
+    path: String,
+    fields: Vec<String>,
+}
+
+impl Struct {
+    /// The struct of this name in one of these sources, if it has named fields.
+    fn find(name: &str, sources: &[Source]) -> Option<Struct> {
+        sources.iter().find_map(|source| {
+            let is_head = |line: &str| {
+                let names = line.split(&[' ', '<'][..]);
+                line.ends_with('{')
+                    && names.skip_while(|word| *word != "struct").nth(1) == Some(name)
+            };
+            let mut lines = source.lines.iter().map(|(_, line)| line.trim_end());
+            lines.find(|line| is_head(line))?;
+            let body = lines.take_while(|line| *line != "}").map(str::trim);
+            let fields = body.filter(|line| line.contains(": ")).map(str::to_owned).collect();
+            Some(Struct { path: source.path.clone(), fields })
+        })
+    }
+
+    /// The types of the fields, without what is around them.
+    fn types(&self) -> impl Iterator<Item = &str> {
+        let last = |field: &str| field.rfind(": ").map(|at| at + 2);
+        self.fields.iter().filter_map(move |field| {
+            field[last(field)?..].trim_end_matches(',').split(['<', '>']).find(|it| !it.is_empty())
+        })
+    }
+}
+
+/// The most fields of a robot, and of each of its components.
+const MOST_FIELDS_OF_ROBOT: usize = 19;
+const MOST_FIELDS: usize = 16;
+
+/// The components of a robot own their state: whoever adds a rule finds every place that can change it in one module.
+#[test]
+fn components_of_a_robot_have_walls() {
+    let all = sources();
+    let robot: Vec<Source> =
+        all.into_iter().filter(|source| source.path.contains("/network/robot/")).collect();
+    let whole = Struct::find("Robot", &robot).expect("there is a robot");
+    assert!(whole.fields.len() <= MOST_FIELDS_OF_ROBOT, "{} fields", whole.fields.len());
+    // Observers read the facts of a robot one by one.
+    let components: Vec<&str> = whole.types().filter(|name| *name != "Facts").collect();
+    let mut offences = Vec::new();
+    let mut count = 0;
+    for (name, found) in
+        components.iter().filter_map(|name| Some((name, Struct::find(name, &robot)?)))
+    {
+        count += 1;
+        let open = found.fields.iter().filter(|field| field.starts_with("pub"));
+        offences.extend(open.map(|field| format!("{}: {name} has `{field}`", found.path)));
+        if found.fields.len() > MOST_FIELDS {
+            offences.push(format!("{}: {name} has {} fields", found.path, found.fields.len()));
+        }
+        let sees_robot = robot.iter().filter(|source| source.path == found.path && *name != "Team");
+        offences.extend(
+            sees_robot.flat_map(|source| source.lines_with(&["&mut Robot", "self: &Robot"])),
+        );
+    }
+    assert!(count >= 14, "{count} components");
+    assert_none(offences, "fields of components are private, few, and changed by their own module");
 }

@@ -235,7 +235,6 @@ impl Robot {
             team,
             neighbours: _, // by their beacons and their silence
             // Constant.
-            rate: _,
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
             schedule: _,
@@ -249,7 +248,6 @@ impl Robot {
             reservation: _,
             navigation: _,
             negotiation: _,
-            bodies: _,
         } = self;
         let [below, ..] = tree.reports();
         let has_reached = self.has_reached_task();

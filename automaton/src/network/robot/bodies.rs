@@ -62,7 +62,9 @@ impl Robot {
     pub(super) fn see_bodies(&mut self, places: &[Point]) {
         let leash = STILL * self.clearance().min(self.site.settings.step_radius);
         let (position, sight) = (self.body.position(), self.site.radio.range() - leash);
-        self.bodies.renew(places, leash, |place| (place - position).norm() > sight);
+        self.neighbours
+            .bodies_mut()
+            .renew(places, leash, |place| (place - position).norm() > sight);
         if !places.is_empty() {
             self.note_change();
         }
@@ -70,7 +72,7 @@ impl Robot {
 
     /// The discs round bodies that rest, of this radius.
     pub(super) fn discs_of_bodies(&self, radius: f64) -> impl Iterator<Item = Disc> {
-        self.bodies.resting().map(move |center| Disc { center, radius })
+        self.neighbours.bodies().resting().map(move |center| Disc { center, radius })
     }
 }
 

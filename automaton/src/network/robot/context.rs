@@ -51,7 +51,7 @@ macro_rules! context {
         $crate::network::robot::context::Context {
             id: $robot.id,
             site: &$robot.site,
-            rate: $robot.rate,
+            rate: $robot.routing.rate(),
             period: $robot.schedule.period(),
             rounds: $robot.schedule.rounds(),
         }

@@ -9,7 +9,7 @@ use crate::network::duty::Duty;
 /// The duty of a robot.
 #[derive(Clone, Debug)]
 pub(super) struct DutyCell {
-    current: Current<Duty>,
+    duty: Current<Duty>,
     /// What the duty automaton jumps together with in this jump.
     label: Label,
     /// How many posts the robot has made in this control period.
@@ -22,22 +22,22 @@ impl Deref for DutyCell {
     type Target = Duty;
 
     fn deref(&self) -> &Duty {
-        &self.current
+        &self.duty
     }
 }
 
 impl DutyCell {
     /// A robot that begins with this duty.
     pub fn new(duty: Duty) -> Self {
-        DutyCell { current: Current::new(duty), label: Label::Alone, posts_made: 0, is_late: false }
+        DutyCell { duty: Current::new(duty), label: Label::Alone, posts_made: 0, is_late: false }
     }
 
     pub const fn current(&self) -> &Current<Duty> {
-        &self.current
+        &self.duty
     }
 
     pub const fn current_mut(&mut self) -> &mut Current<Duty> {
-        &mut self.current
+        &mut self.duty
     }
 
     /// A control period begins.
@@ -85,6 +85,6 @@ impl DutyCell {
 impl DutyCell {
     /// The robot has this duty.
     pub fn is(&mut self, duty: Duty) {
-        self.current = Current::new(duty);
+        *self = DutyCell { duty: Current::new(duty), ..self.clone() };
     }
 }

@@ -14,7 +14,7 @@ pub(super) type Progress = (NoticeId, usize);
 /// The exchanges of duties of a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Exchanges {
-    current: Current<Exchange>,
+    exchange: Current<Exchange>,
     /// How many offers the robot may have made before it began: at most one in each control period.
     forgotten_offers: u32,
     /// The robot in its way with which it could exchange duties.
@@ -49,7 +49,7 @@ impl Default for Exchanges {
     /// Those of a robot that has made no offer.
     fn default() -> Self {
         Exchanges {
-            current: Current::new(Exchange::Free(Free(Offers::new()))),
+            exchange: Current::new(Exchange::Free(Free(Offers::new()))),
             forgotten_offers: 0,
             partner: None,
             taking_over: None,
@@ -76,16 +76,16 @@ impl Exchanges {
     }
 
     pub const fn current(&self) -> &Current<Exchange> {
-        &self.current
+        &self.exchange
     }
 
     pub const fn current_mut(&mut self) -> &mut Current<Exchange> {
-        &mut self.current
+        &mut self.exchange
     }
 
     /// The robot's offer and reply.
     pub fn offers(&self) -> &Offers<Duty> {
-        self.current.offers()
+        self.exchange.offers()
     }
 
     /// The robot in the way with which the robot could exchange duties.
@@ -158,7 +158,7 @@ impl Exchanges {
 impl Exchanges {
     /// What decides on the exchanges ahead, beside those that are past.
     pub fn account(&self) -> String {
-        format!("{:?} {:?}", &*self.current, self.answered)
+        format!("{:?} {:?}", &*self.exchange, self.answered)
     }
 }
 
@@ -166,7 +166,7 @@ impl Exchanges {
 impl Exchanges {
     /// The robot is in this state.
     pub fn is_at(&mut self, exchange: Exchange) {
-        self.current = Current::new(exchange);
+        *self = Exchanges { exchange: Current::new(exchange), ..self.clone() };
     }
 }
 

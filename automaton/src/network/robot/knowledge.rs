@@ -15,7 +15,7 @@ use crate::network::site::Site;
 /// The mission as one robot knows it.
 #[derive(Clone, Debug)]
 pub(super) struct Knowledge {
-    current: Current<Mission>,
+    phase: Current<Mission>,
     bulletin: Bulletin,
     /// The epoch of the notices that the robot goes by.
     epoch: u32,
@@ -41,7 +41,7 @@ impl Deref for Knowledge {
     type Target = Mission;
 
     fn deref(&self) -> &Mission {
-        &self.current
+        &self.phase
     }
 }
 
@@ -49,7 +49,7 @@ impl Default for Knowledge {
     /// That of a robot which has received nothing.
     fn default() -> Self {
         Knowledge {
-            current: Current::new(Mission::Idle(Idle)),
+            phase: Current::new(Mission::Idle(Idle)),
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             epoch: 0,
             announced: None,
@@ -66,11 +66,11 @@ impl Default for Knowledge {
 
 impl Knowledge {
     pub const fn current(&self) -> &Current<Mission> {
-        &self.current
+        &self.phase
     }
 
     pub const fn current_mut(&mut self) -> &mut Current<Mission> {
-        &mut self.current
+        &mut self.phase
     }
 
     /// Merges what a neighbour knows.
@@ -190,7 +190,7 @@ impl Knowledge {
 impl Knowledge {
     /// The mission is in this phase.
     pub fn is(&mut self, mission: Mission) {
-        self.current = Current::new(mission);
+        *self = Knowledge { phase: Current::new(mission), ..self.clone() };
     }
 
     /// The newest notice is this.

@@ -1,13 +1,17 @@
 //! One robot: its own state, and how it processes the messages that it receives.
 //!
-//! Everything here is local. A robot knows its own position and duty, what every robot knows
-//! from the beginning ([`Site`]), and the messages of the neighbours that it hears. It is a
+//! Everything here is local. A robot has its own position and duty, what every robot has
+//! from the beginning ([`Site`]), and the messages of the neighbours that it receives. It is a
 //! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
-//! control period. The chapters follow that period: it receives beacons (`hearing`) and learns who
-//! does not take part (`absence`) and where robots of other fleets are (`bodies`), keeps its place
-//! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
-//! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`, `judging`);
+//! control period.
+//!
+//! A robot is made of components: each owns its state, in a module of its own, and sees of the others what it is given as
+//! arguments, with a read-only [`Context`](context::Context) of the step. The fields of [`Robot`] name them. The chapters are
+//! about what robots do with several of them, in the order of a control period: a robot receives beacons (`hearing`) and
+//! learns who does not take part (`absence`) and where robots of other fleets are (`bodies`), keeps its place
+//! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`leader`, `recruit`,
+//! `path`, `team`), exchanges duties with a robot in its way (`partner`) or makes way
+//! (`yielding`), and moves (`way`, `motion`, `judging`);
 //! what its guards see of all this are `facts`. What its automata do stands in `duties`, `mission`, `exchange`,
 //! `lineage` and `control`, and where it goes in `target`; `step` takes inputs, `rounds` counts rounds, `skipped_work`
 //! is what need not be done again, and `view` what observers read.
@@ -91,7 +95,6 @@ use super::record::MissionEvent;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
 use ballot::Ballot;
-use bodies::Bodies;
 use body::Body;
 use context::context;
 use duties::Label;
@@ -120,44 +123,45 @@ const POSTS_OF_A_PERIOD: u32 = 8;
 
 /// A robot of the network.
 #[derive(Clone, Debug)]
-#[repr(C, align(64))] // in this order, from the beginning of a cache line
+#[repr(C, align(64))] // in this order, from the beginning of a cache line: first what each message touches
 pub struct Robot {
-    // What it touches in every round stands together at the beginning. With a message: where it is, and which of
-    // its neighbours is expected to be heard next.
+    /// Where it is.
     body: Body,
+    /// The nodes that it receives, and the robots of other fleets near it.
     neighbours: Neighbours,
+    /// Who takes part.
     membership: Membership,
-
-    // At a tick: what it knows from the beginning, where it stands in its control period and rounds of beacons,
-    // sweeps or negotiation, and what it does now.
+    /// What it has from the beginning.
     site: Arc<Site>,
+    /// Where it is in its control period.
     schedule: Schedule,
-
+    /// What has changed since it last derived something.
     changes: Changes,
-
     id: NodeId,
+    /// What it sends of itself.
     outbox: Outbox,
-
-    /// r_i.
-    rate: f64,
+    /// Which flows it plans.
     routing: Routing,
+    /// Which flows are in use.
     reservation: Reservation,
-
-    // Where it is in its automata, and what the duty automaton jumps together with.
+    /// What it does.
     duty: DutyCell,
+    /// What it knows of the mission.
     mission: Knowledge,
+    /// What its guards saw last.
     facts: Facts,
-
+    /// The exchange of duties that it is engaged in.
     exchanges: Exchanges,
-
+    /// Its place in the tree.
     tree: TreePlace,
+    /// The election and the agreement that it takes part in.
     ballot: Ballot,
+    /// What the primary team knows of itself.
     team: Team,
-    // Motion.
+    /// Where it goes.
     navigation: Navigation,
+    /// Which moves are proposed, and who consents.
     negotiation: Negotiation,
-    /// The robots of other fleets near it.
-    bodies: Bodies,
 }
 
 impl Robot {
@@ -166,26 +170,24 @@ impl Robot {
         let post = Post::redundant(PostId(id as u32));
         let station = Station { post, reference: position };
         Robot {
-            id,
-            rate,
+            body: Body::at(position, site.settings.period),
+            neighbours: Neighbours::default(),
+            membership: Membership::default(),
             schedule: Schedule::default(),
             changes: Changes::default(),
+            id,
             outbox: Outbox::default(),
-            membership: Membership::default(),
-            body: Body::at(position, site.settings.period),
+            routing: Routing::new(site.settings.routing_method, rate),
+            reservation: Reservation::default(),
             duty: DutyCell::new(Duty::Standby(Standby(Held { station, left: None }))),
             mission: Knowledge::default(),
             facts: Facts::default(),
             exchanges: Exchanges::default(),
-            neighbours: Neighbours::default(),
             tree: TreePlace::alone(id),
             ballot: Ballot::default(),
             team: Team::default(),
-            routing: Routing::new(site.settings.routing_method),
-            reservation: Reservation::default(),
             navigation: Navigation::default(),
             negotiation: Negotiation::default(),
-            bodies: Bodies::default(),
             site,
         }
     }
@@ -208,7 +210,7 @@ impl Robot {
     pub(super) fn begin_again(&mut self) -> Result<(), TransitionError> {
         let role = self.role();
         let (site, place) = (Arc::clone(&self.site), self.body.position());
-        let fresh = Robot::new(self.id, place, self.rate, site);
+        let fresh = Robot::new(self.id, place, self.routing.rate(), site);
         let known = std::mem::replace(self, fresh);
         self.exchanges = Exchanges::after(known.offers().offers_made());
         let period = known.schedule.period();

@@ -216,7 +216,10 @@ impl Robot {
             .filter(|n| !n.is_access_point() && n.distance < near)
             .map(Neighbour::position)
             .chain(
-                self.bodies.places().filter(|place| (place - self.body.position()).norm() < near),
+                self.neighbours
+                    .bodies()
+                    .places()
+                    .filter(|place| (place - self.body.position()).norm() < near),
             )
             .collect();
         let mut half_planes =

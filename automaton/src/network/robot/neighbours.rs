@@ -4,6 +4,7 @@ use std::ops::Deref;
 
 use pleach_discrete::network::{NodeId, PostId};
 
+use super::bodies::Bodies;
 use super::hearing::Neighbour;
 
 /// The nodes that a robot hears, ascending. What they are looked up by, all the time, stands together in a line or two of
@@ -16,6 +17,8 @@ pub(super) struct Neighbours {
     expected: u32,
     /// The last control period in which all have been received in the last round in which all robots send.
     heard_all_in: Option<u32>,
+    /// The robots of other fleets near it.
+    bodies: Bodies,
 }
 
 /// What a neighbour is looked up by.
@@ -78,6 +81,16 @@ impl Neighbours {
     /// Whether that is so for this control period, or was for the one before.
     pub(super) fn have_all_been_heard_lately(&self, period: u32) -> bool {
         self.heard_all_in.is_some_and(|heard| heard.saturating_add(1) >= period)
+    }
+
+    /// The robots of other fleets near it.
+    pub(super) const fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    /// The robots of other fleets are seen.
+    pub(super) const fn bodies_mut(&mut self) -> &mut Bodies {
+        &mut self.bodies
     }
 
     /// Those that hold `post`.

@@ -144,7 +144,7 @@ impl Schedule {
 
     /// It is in this stage.
     pub fn is_at(&mut self, control: Control) {
-        self.control = Current::new(control);
+        *self = Schedule { control: Current::new(control), ..self.clone() };
     }
 }
 

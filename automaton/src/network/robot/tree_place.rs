@@ -13,7 +13,7 @@ use crate::network::shared::renew;
 /// The place of a robot in the tree.
 #[derive(Clone, Debug)]
 pub(super) struct TreePlace {
-    current: Current<PlaceInTree>,
+    place: Current<PlaceInTree>,
     /// The parent as it was last.
     parent: Option<NodeId>,
     heard_way: HeardWay,
@@ -47,7 +47,7 @@ impl TreePlace {
     /// That of a robot which is attached to nothing.
     pub fn alone(id: NodeId) -> Self {
         TreePlace {
-            current: Current::new(PlaceInTree::Detached(Detached)),
+            place: Current::new(PlaceInTree::Detached(Detached)),
             parent: None,
             heard_way: HeardWay::NoParent,
             is_displaced: false,
@@ -66,16 +66,16 @@ impl TreePlace {
     }
 
     pub const fn current(&self) -> &Current<PlaceInTree> {
-        &self.current
+        &self.place
     }
 
     pub const fn current_mut(&mut self) -> &mut Current<PlaceInTree> {
-        &mut self.current
+        &mut self.place
     }
 
     /// The way from the post of the robot to an access point, if one is known.
     pub fn lineage(&self) -> Option<&Arc<Lineage>> {
-        match &*self.current {
+        match &*self.place {
             PlaceInTree::Detached(_) => None,
             PlaceInTree::Attached(attached) => Some(&attached.way),
         }

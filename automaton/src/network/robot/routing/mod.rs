@@ -31,6 +31,8 @@ pub use links::RouteLink;
 /// How a robot routes its packets: the links over which it may send, and the plan of a control period.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Routing {
+    /// r_i.
+    rate: f64,
     links: Links,
     iteration: Iteration,
     sweep: Sweep,
@@ -52,9 +54,10 @@ pub(super) struct Survey {
 }
 
 impl Routing {
-    /// That of a robot without links.
-    pub fn new(method: RoutingMethod) -> Self {
+    /// That of a robot with the rate r_i and without links.
+    pub fn new(method: RoutingMethod, rate: f64) -> Self {
         Routing {
+            rate,
             links: Links::default(),
             iteration: Iteration::new(method),
             sweep: Sweep::default(),
@@ -198,6 +201,11 @@ impl Routing {
     /// h_i = Σ_j T_ij: the share of its time for which it sends.
     pub fn load(&self) -> f64 {
         self.routes().map(|link| link.share).sum()
+    }
+
+    /// r_i.
+    pub const fn rate(&self) -> f64 {
+        self.rate
     }
 
     /// λ_i.

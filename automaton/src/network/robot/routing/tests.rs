@@ -30,7 +30,7 @@ impl Alone {
     /// Without links.
     fn new() -> Self {
         let site = Arc::new(Site::new(&hall()).expect("its numbers make sense"));
-        Alone { routing: Routing::new(site.settings.routing_method), site }
+        Alone { routing: Routing::new(site.settings.routing_method, RATE), site }
     }
 
     /// With links to the access point, 1.2 away, and to robot 5, 1.0 away.
