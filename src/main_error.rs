@@ -6,6 +6,9 @@ use std::fmt;
 /// Any error, for `fn main() -> Result<(), MainError>`: the message of the error and of its causes is
 /// printed, instead of its debug form.
 ///
+/// It is not itself an [`Error`], since `?` could then not convert every error to it. A function that others call
+/// returns an error of its own, or `Box<dyn Error + Send + Sync>`.
+///
 /// ```
 /// use pleach::prelude::*;
 ///

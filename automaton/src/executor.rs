@@ -74,6 +74,7 @@
 //! ```
 
 use std::convert::Infallible;
+use std::fmt;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
@@ -210,7 +211,7 @@ pub struct Executor {
 /// instant: what is measured of the time between them is mostly rounding.
 const SPACINGS: f64 = 16.0;
 
-/// When and why a run ended.
+/// When and why a run ended. It prints as `(15 s, 3): the horizon is reached`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ending<F> {
     /// The hybrid time reached.
@@ -280,6 +281,32 @@ pub enum Limit {
     /// Memory for the trajectory, in bytes.
     #[error("the trajectory reached its limit of {0} bytes")]
     Memory(u64),
+}
+
+impl<F: fmt::Display> fmt::Display for Ending<F> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {}", self.at, self.reason)
+    }
+}
+
+impl<F: fmt::Display> fmt::Display for Reason<F> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Reason::Finished(finish) | Reason::Interrupted(finish) => finish.fmt(formatter),
+            Reason::Horizon => formatter.write_str("the horizon is reached"),
+            Reason::Blocked => {
+                formatter.write_str("neither time can pass nor a transition be taken")
+            }
+            Reason::JumpLimit(_) => {
+                formatter.write_str("there are more rounds of jumps at one instant than allowed")
+            }
+            Reason::Sliding(_) => {
+                formatter.write_str("the flows of two locations lead to the boundary between them")
+            }
+            Reason::Limit(limit) => limit.fmt(formatter),
+            Reason::Zeno(zeno) => write!(formatter, "jumps accumulate at {} s", zeno.accumulation),
+        }
+    }
 }
 
 impl Reason<Infallible> {

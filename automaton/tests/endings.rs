@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use pleach_automaton::{Executor, HybridTime, InvalidLimit, Reason, Round, System};
+use pleach_automaton::{Ending, Executor, HybridTime, InvalidLimit, Limit, Reason, Round, System};
 
 /// A system of one component that says the same at every instant.
 struct Constant {
@@ -47,6 +47,21 @@ fn without_transitions_time_passes_to_the_horizon() {
     let horizon = HybridTime { t: 10.0, j: 0 };
     assert_eq!(ending(false, None), (horizon, Reason::Horizon));
     assert_eq!(ending(false, Some(3.0)), (horizon, Reason::Horizon));
+}
+
+#[test]
+fn endings_print_when_and_why() {
+    let reasons = [
+        (Reason::Horizon, "the horizon is reached"),
+        (Reason::Blocked, "neither time can pass nor a transition be taken"),
+        (Reason::JumpLimit(None), "there are more rounds of jumps at one instant than allowed"),
+        (Reason::Limit(Limit::Jumps(7)), "the run reached its limit of 7 jumps"),
+        (Reason::Finished("a formula has no value"), "a formula has no value"),
+    ];
+    for (reason, text) in reasons {
+        let ending = Ending { at: HybridTime { t: 2.5, j: 4 }, reason };
+        assert_eq!(ending.to_string(), format!("(2.5 s, 4): {text}"));
+    }
 }
 
 #[test]
