@@ -2,6 +2,7 @@
 
 pub use crate::MainError;
 pub use pleach_automaton::composition::Channel;
+pub use pleach_automaton::composition::stream::CsvLog;
 pub use pleach_automaton::{
     Automaton, BuildError, Composition, CompositionError, Coordinates, Flow, Policy, Reason, Reset,
     Settings, Trajectory, coordinates, diagram, from,

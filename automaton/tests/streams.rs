@@ -105,6 +105,28 @@ fn a_log_has_both_sides_of_every_jump() {
     assert_eq!(lines.count(), 3 + 2 * recorded.jumps().len());
 }
 
+#[test]
+fn a_log_has_the_columns_of_choice() {
+    let log = |columns: &[&str]| {
+        let mut log = CsvLog::every(1.0, Vec::new()).columns(columns.iter().copied());
+        model(0.3).stream(Settings::default(), 0.0, &mut log).expect("it runs");
+        log.finish().map(|text| String::from_utf8(text).expect("it is text"))
+    };
+    let text = log(&["wave.s", "wave.p"]).expect("it is written");
+    assert_eq!(text.lines().next(), Some("t,j,component,event,wave.s,wave.p"));
+    let all = model(0.3);
+    let start: Vec<f64> = ["wave.s", "wave.p"]
+        .iter()
+        .map(|name| all.run(0.0).expect("it runs").value(name, 0.0).expect("it is there"))
+        .collect();
+    assert_eq!(text.lines().nth(1), Some(&*format!("0,0,,,{},{}", start[0], start[1])));
+    let fault = log(&["wave.p", "wave.q"]).expect_err("there is no such column").to_string();
+    assert!(
+        fault.starts_with("there is no column `wave.q`: there are `wave.p`, `wave.s`, "),
+        "{fault}"
+    );
+}
+
 /// A writer that fails is reported, once the run is over.
 #[test]
 fn a_log_that_cannot_be_written_says_so() {

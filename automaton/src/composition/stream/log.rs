@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use pleach_guards::{Expression, Program};
+use pleach_guards::{Expression, Program, variable};
 
 use super::{Composition, Flowing, Jumping, RunObserver};
 
@@ -53,14 +53,16 @@ impl RunObserver for Samples {
     }
 }
 
-/// Writes a run as CSV: the time t, the number j of jumps, the components and the event of a jump, all
-/// variables and all signals. There is a row for each time of a grid, and one for each side of a jump; the second of these
-/// has the event.
+/// Writes a run as CSV: the time t, the number j of jumps, the components and the event of a jump, then
+/// variables and signals, all of them or those [of choice](Self::columns). There is a row for each time of a grid, and one
+/// for each side of a jump; the second of these has the event.
 pub struct CsvLog<W> {
     grid: Grid,
     writer: W,
-    /// The signals, once there is a header.
-    signals: Option<Vec<Program>>,
+    /// The variables and signals that are written, if they are chosen.
+    chosen: Option<Vec<String>>,
+    /// Their formulas, once there is a header.
+    columns: Option<Vec<Program>>,
     /// The first that failed.
     fault: Option<io::Error>,
 }
@@ -69,14 +71,21 @@ impl<W: Write> CsvLog<W> {
     /// With a row every `period` seconds, besides jumps; with an infinite period for jumps alone. Numbers
     /// are written one by one: hand in a buffered writer.
     pub fn every(period: f64, writer: W) -> Self {
-        CsvLog { grid: Grid::every(period), writer, signals: None, fault: None }
+        CsvLog { grid: Grid::every(period), writer, chosen: None, columns: None, fault: None }
+    }
+
+    /// Writes these variables and signals alone, in this order, after the four columns that every row has.
+    #[must_use]
+    pub fn columns(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        self.chosen = Some(names.into_iter().map(Into::into).collect());
+        self
     }
 
     /// The writer, when all is written.
     ///
     /// # Errors
     ///
-    /// The first error of the writer.
+    /// The first error of the writer, or a chosen column that the composition does not have, with those that it has.
     pub fn finish(mut self) -> io::Result<W> {
         match self.fault.take() {
             Some(fault) => Err(fault),
@@ -85,16 +94,29 @@ impl<W: Write> CsvLog<W> {
     }
 
     fn begin(&mut self, composition: &Composition) -> io::Result<()> {
-        if self.signals.is_some() {
+        if self.columns.is_some() {
             return Ok(());
         }
         let variables = composition.variables();
-        let compile = |(_, formula): (_, &Expression)| formula.compile(variables);
-        let signals = composition.signals().map(compile).collect::<Result<_, _>>();
-        self.signals = Some(signals.map_err(io::Error::other)?);
+        let signals = composition.signals().map(|(name, formula)| (name, formula.clone()));
+        let known: Vec<(&str, Expression)> =
+            variables.iter().map(|name| (&**name, variable(name))).chain(signals).collect();
+        let names: Vec<&str> = match &self.chosen {
+            Some(chosen) => chosen.iter().map(String::as_str).collect(),
+            None => known.iter().map(|(name, _)| *name).collect(),
+        };
+        let program = |name: &&str| match known.iter().find(|(known, _)| known == name) {
+            Some((_, formula)) => formula.compile(variables).map_err(io::Error::other),
+            None => {
+                let known: Vec<String> =
+                    known.iter().map(|(name, _)| format!("`{name}`")).collect();
+                let known = known.join(", ");
+                Err(io::Error::other(format!("there is no column `{name}`: there are {known}")))
+            }
+        };
+        self.columns = Some(names.iter().map(program).collect::<io::Result<_>>()?);
         write!(self.writer, "t,j,component,event")?;
-        let signals = composition.signals().map(|(name, _)| name);
-        for name in variables.iter().map(String::as_str).chain(signals) {
+        for name in names {
             write!(self.writer, ",{}", quoted(name))?;
         }
         writeln!(self.writer)
@@ -102,9 +124,8 @@ impl<W: Write> CsvLog<W> {
 
     fn row(&mut self, t: f64, j: u32, what: [&str; 2], values: &[f64]) -> io::Result<()> {
         write!(self.writer, "{t},{j},{},{}", quoted(what[0]), quoted(what[1]))?;
-        let signals = self.signals.iter().flatten().map(|signal| signal.evaluate(values));
-        for value in values.iter().copied().chain(signals) {
-            write!(self.writer, ",{value}")?;
+        for column in self.columns.iter().flatten() {
+            write!(self.writer, ",{}", column.evaluate(values))?;
         }
         writeln!(self.writer)
     }
