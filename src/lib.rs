@@ -11,8 +11,7 @@
 //! # A control loop
 //!
 //! A room with a load that follows a table, heated by a PI controller that is sampled every 10 ms,
-//! saturates and unwinds its integral. Each sample sends the output of the sample before, as a channel carries values as
-//! they were before the jump, and it takes effect 25 ms later:
+//! saturates and unwinds its integral. Its output takes effect 25 ms after each sample:
 //!
 //! ```
 //! use pleach::prelude::*;
@@ -23,7 +22,7 @@
 //! }
 //! coordinates! {
 //!     struct Room { temperature = "T", heating = "u", time = "t" }
-//!     struct Controller { measured = "T", integral = "I", output = "u" }
+//!     struct Controller { measured = "T", integral = "I" }
 //! }
 //! use {Clock::Sample, Place::Running};
 //!
@@ -34,17 +33,17 @@
 //!     .flow(Running, [temperature.rate((&heating + load - &temperature) / 0.5), time.rate(1)])
 //!     .build()?;
 //!
-//! let Controller { measured, integral, output } = Controller::coordinates();
-//! let error = variable("e");
+//! let Controller { measured, integral } = Controller::coordinates();
+//! let (error, output) = (variable("e"), variable("u"));
 //! let wanted = 4.0 * &error + &integral;
-//! let possible = wanted.max(0.0).min(10.0);
-//! let unwound = 0.01 * (6.0 * error + 2.0 * (&possible - &wanted));
+//! let unwound = 0.01 * (6.0 * error + 2.0 * (output - &wanted));
 //! let controller = Automaton::starting_in(Running)
-//!     .initially(Controller { measured: 0.0, integral: 0.0, output: 0.0 })
+//!     .initially(Controller { measured: 0.0, integral: 0.0 })
 //!     .signal("e", 3.0 - &measured)
+//!     .signal("u", wanted.max(0.0).min(10.0))
 //!     .transition(
 //!         from(Running).on(Sample).to(Running).may(always())
-//!             .then([output.becomes(possible), integral.becomes(&integral + unwound)]),
+//!             .then(integral.becomes(&integral + unwound)),
 //!     )
 //!     .build()?;
 //!

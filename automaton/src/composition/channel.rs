@@ -119,8 +119,7 @@ impl Channel {
     /// From the event `output` of a component, written `component.event`, to [held](Self::held)
     /// values: messages arrive without an event of a receiver. The channel is called after its output.
     ///
-    /// A controller samples, and what it sends takes effect a tenth of a second later. Values are sent as they were before the
-    /// jump: a coordinate that the sample assigns arrives one sample later, a [signal](crate::Builder::signal) at once.
+    /// A controller samples every 10 ms, and its output, the signal `u`, takes effect a tenth of a second later:
     ///
     /// ```
     /// use pleach_automaton::composition::Channel;
@@ -130,6 +129,9 @@ impl Channel {
     ///     .taking(0.1, 0.1)
     ///     .holding(11);
     /// ```
+    ///
+    /// Let `u` be a [signal](crate::Builder::signal) of what the controller measures: values are sent as they are before
+    /// the jump, so a coordinate that the sample assigns is sent by the next sample.
     pub fn holding_last(output: &str) -> Self {
         Channel {
             output: output.to_owned(),
