@@ -221,6 +221,11 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         self.parameters.iter().map(|(name, value)| (name.as_str(), *value))
     }
 
+    /// The events that are taken at [samples](crate::Builder::every).
+    pub fn sampled_events(&self) -> impl ExactSizeIterator<Item = E> {
+        self.samplings.iter().map(|(event, _)| *event)
+    }
+
     /// The names of the events that are taken at samples, and when.
     pub(crate) fn samplings(&self) -> impl Iterator<Item = (&'static str, Sampling)> {
         self.samplings.iter().map(|(event, sampling)| (event.name(), *sampling))

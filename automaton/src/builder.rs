@@ -377,6 +377,8 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
     }
 
     /// As [`every`](Self::every), at `phase` ≥ 0, `phase` + `period`, … seconds.
+    ///
+    /// [`build`](Self::build) refuses a period that is not finite and above 0, and an event that is sampled twice.
     pub fn every_from(self, event: E, period: f64, phase: f64) -> Self {
         self.sampled(event, Sampling { period, phase })
     }

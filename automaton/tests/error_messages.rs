@@ -1,9 +1,7 @@
 //! What is said about parts that do not fit: the place, what is wrong, and what would be right.
 //! Every error of `build` is here, of automata and of compositions.
 
-use pleach_automaton::{
-    Automaton, BuildError, Composition, Name, Record, Reset, coordinates, from,
-};
+use pleach_automaton::{Automaton, BuildError, Composition, Reset, coordinates, from};
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency, vocabulary};
 use pleach_guards::{Guard, always, proposition, variable};
 
@@ -206,16 +204,15 @@ fn compositions_say_what_does_not_fit() {
     let pair = || lamp_of("left").add("right", &built(lamp()));
     let nowhere = Automaton::<Lamp, Press, Light>::starting_in(Lamp::Off).build();
     let warming = built(lamp().flow(Lamp::Lit, heat.rate(1.0)));
-    let dotted = Automaton::<Name, Name, Record>::starting_in(Name::new("here"));
-    let dotted = dotted.initially(Record::new([("right.q", 0.0)]).expect("one name"));
-    let dotted = dotted.build().expect("the parts fit");
     let misread = "cannot be connected to";
     let expected = [
         (Composition::builder(), "a composition needs at least one component".to_owned()),
         (pair().add("left", &built(lamp())), "two components are called `left`: rename one".into()),
         (
-            lamp_of("left.right").add("left", &dotted),
-            "two variables are called `left.right.q`: rename a component or a coordinate".into(),
+            lamp_of("left.right"),
+            "`left.right` cannot name a component: names stand before a dot and between commas, so they \
+             cannot be empty, nor have a dot, a comma, a quotation mark or a line break"
+                .into(),
         ),
         (
             Composition::builder().add("lamp", &nowhere.expect("the parts fit")),

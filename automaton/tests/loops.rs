@@ -1,10 +1,10 @@
 //! Sampled and delayed loops: clocks that sample, channels that hold what arrived last, and load
 //! profiles, against solutions that are worked out step by step.
 
-use pleach_automaton::composition::Channel;
+use pleach_automaton::check::Kind;
+use pleach_automaton::composition::{Channel, Policy, Settings};
 use pleach_automaton::{
-    Automaton, BuildError, Builder, Composition, CompositionError, Reason, SimulationError,
-    coordinates, from,
+    Automaton, BuildError, Builder, Composition, CompositionError, Reason, coordinates, from,
 };
 use pleach_discrete::vocabulary;
 use pleach_guards::{Table, always};
@@ -37,8 +37,9 @@ const TARGET: f64 = 3.0;
 const LOADS: [(f64, f64); 4] = [(0.0, 0.0), (1.0, -2.0), (1.5, 40.0), (2.003, 0.5)];
 
 /// A heater with a lag and a load, and a PI controller that is sampled, saturates, and unwinds its
-/// integral by what saturation cuts off.
-fn heated_room() -> Composition {
+/// integral by what saturation cuts off. Its output is the signal `v`, which a sample keeps as the coordinate `u`;
+/// one of them is sent.
+fn heated_room(sent: &str) -> Composition {
     let Plant { temperature, voltage, time } = Plant::coordinates();
     let load = Table::steps(LOADS).expect("in order").at(&time);
     let plant = Automaton::<_, Cue, _>::starting_in(Running)
@@ -54,6 +55,7 @@ fn heated_room() -> Composition {
     let cut = unwinding * (&possible - &wanted);
     let controller = Automaton::starting_in(Running)
         .initially(Controller { measured: 0.0, integral: 0.0, output: 0.0 })
+        .signal("v", possible.clone())
         .transition(from(Running).on(Sample).to(Running).may(always()).then([
             output.becomes(possible),
             integral.becomes(&integral + PERIOD * (integrating * error + cut)),
@@ -67,7 +69,7 @@ fn heated_room() -> Composition {
         .every("pi.sample", PERIOD)
         .channel(
             Channel::holding_last("pi.sample")
-                .held("pi.u", "plant.u", 0.0)
+                .held(sent, "plant.u", 0.0)
                 .taking(DELAY, DELAY)
                 .holding(3),
         )
@@ -75,8 +77,9 @@ fn heated_room() -> Composition {
         .expect("they fit together")
 }
 
-/// The temperature at the samples, from the exact solution between any two changes of its rate.
-fn exact(samples: usize) -> Vec<f64> {
+/// The temperature at the samples, from the exact solution between any two changes of its rate, where a sample
+/// sends its own output or the one before.
+fn exact(samples: usize, sends_its_own: bool) -> Vec<f64> {
     let ([proportional, integrating, unwinding], mut integral, mut output) = (GAINS, 0.0, 0.0);
     let (mut x, mut now, mut found) = (0.0, 0.0, Vec::new());
     // What is sent, and when it arrives.
@@ -98,11 +101,10 @@ fn exact(samples: usize) -> Vec<f64> {
             now = end;
         }
         found.push(x);
-        // What goes out at a sample was worked out at the one before.
-        sent.push((sample + DELAY, output));
         let error = TARGET - x;
         let wanted: f64 = proportional * error + integral;
-        output = wanted.clamp(0.0, 10.0);
+        let before = std::mem::replace(&mut output, wanted.clamp(0.0, 10.0));
+        sent.push((sample + DELAY, if sends_its_own { output } else { before }));
         integral += PERIOD * (integrating * error + unwinding * (output - wanted));
     }
     found
@@ -110,16 +112,18 @@ fn exact(samples: usize) -> Vec<f64> {
 
 #[test]
 fn a_sampled_loop_with_delay_saturation_and_load_is_exact() {
-    let room = heated_room();
-    assert!(room.check().findings().is_empty(), "{}", room.check());
-    let trajectory = room.run(4.0).expect("it runs");
-    assert_eq!(trajectory.ending().reason, Reason::Horizon);
-    let exact = exact(400);
-    let peak = exact.iter().copied().fold(0.0, f64::max);
-    assert!(peak > 10.0, "the load saturates the controller: {peak}");
-    for (number, exact) in exact.into_iter().enumerate() {
-        let found = trajectory.value("plant.T", number as f64 * PERIOD).expect("it lasts");
-        assert!((found - exact).abs() < 1e-8, "{found} is not {exact} at sample {number}");
+    for (sent, sends_its_own) in [("pi.v", true), ("pi.u", false)] {
+        let room = heated_room(sent);
+        assert!(room.check().findings().is_empty(), "{}", room.check());
+        let trajectory = room.run(4.0).expect("it runs");
+        assert_eq!(trajectory.ending().reason, Reason::Horizon);
+        let exact = exact(400, sends_its_own);
+        let peak = exact.iter().copied().fold(0.0, f64::max);
+        assert!(peak > 10.0, "the load saturates the controller: {peak}");
+        for (number, exact) in exact.into_iter().enumerate() {
+            let found = trajectory.value("plant.T", number as f64 * PERIOD).expect("it lasts");
+            assert!((found - exact).abs() < 1e-8, "{found} is not {exact} at sample {number}");
+        }
     }
 }
 
@@ -240,9 +244,134 @@ fn guards_are_looked_at_when_they_are_sampled() {
 fn events_that_are_sampled_in_vain_or_twice_are_refused() {
     let unused = Automaton::<Heater, Look, Room>::starting_in(Off).every(Cold, 1.0).build();
     assert!(matches!(unused, Err(BuildError::SampledWithoutRow { event: "cold" })));
-    for refused in [thermostat().every(Cold, 0.0), thermostat().every(Cold, 1.0).every(Cold, 2.0)] {
-        let run = refused.build().expect("the parts are sound").run(1.0);
-        let Err(SimulationError::Composition(error)) = run else { panic!("it is no sampling") };
-        assert!(matches!(error, CompositionError::Sampler { .. }), "{error}");
+    let twice = thermostat().every(Cold, 1.0).every(Cold, 2.0).build();
+    assert!(matches!(twice, Err(BuildError::GivenTwice { place: "cold", part: "samples" })));
+    let refused = [
+        (thermostat().every(Cold, 0.0), "its period is 0 s: it has to be finite and above 0"),
+        (thermostat().every(Cold, -1.0), "its period is -1 s: it has to be finite and above 0"),
+        (
+            thermostat().every(Cold, f64::NAN),
+            "its period is NaN s: it has to be finite and above 0",
+        ),
+        (
+            thermostat().every_from(Cold, 1.0, -0.5),
+            "its phase is -0.5 s: it has to be finite and at least 0",
+        ),
+    ];
+    for (builder, reason) in refused {
+        let fault = builder.build().err().expect("it cannot be sampled").to_string();
+        assert_eq!(fault, format!("event `cold` cannot be sampled: {reason}"));
+    }
+    let nothing = Composition::builder().every("counter.sample", 1.0).build();
+    assert!(matches!(nothing, Err(CompositionError::Empty)));
+}
+
+/// Time has to advance from one sample to the next, up to the horizon.
+#[test]
+fn samples_that_numbers_do_not_resolve_are_refused() {
+    let sampled = |period: f64| {
+        Composition::builder()
+            .add("counter", &counter())
+            .every("counter.sample", period)
+            .build()
+            .expect("it fits")
+    };
+    let refused = sampled(1e-300).run(15.0).err().expect("time does not advance").to_string();
+    for part in ["clock of counter.sample", "1e-300 s", "15 s", "longer period"] {
+        assert!(refused.contains(part), "{refused}");
+    }
+    assert!(sampled(1e-300).run(3e-300).is_ok());
+    assert!(sampled(f64::EPSILON).run(4.0 * f64::EPSILON).is_ok());
+}
+
+/// A channel loses messages where the check says so.
+#[test]
+fn channels_that_lose_messages_are_reported() {
+    let delayed = |period: f64, delay: f64, places: usize| {
+        let Sum { total, rate } = Sum::coordinates();
+        let sum = Automaton::<_, Cue, _>::starting_in(Running)
+            .initially(Sum { total: 0.0, rate: 0.0 })
+            .flow(Running, total.rate(&rate))
+            .build()
+            .expect("it is sound");
+        let channel = Channel::holding_last("counter.sample").held("counter.n", "sum.r", 0.0);
+        Composition::builder()
+            .add("counter", &counter())
+            .add("sum", &sum)
+            .every("counter.sample", period)
+            .channel(channel.taking(delay, delay).holding(places))
+            .build()
+            .expect("they fit together")
+    };
+    for (period, delay, needed) in [
+        (0.01, 0.025, 3),
+        (0.01, 0.1, 11),
+        (0.1, 0.3, 4),
+        (0.1, 1.0, 11),
+        (0.125, 1.0, 9),
+        (1.0, 0.0, 1),
+        (1.0, 0.5, 1),
+    ] {
+        for places in 1..=needed {
+            let both = delayed(period, delay, places);
+            let report = both.check();
+            let is_reported = report.findings().iter().any(|one| one.kind == Kind::LosesMessages);
+            let run = both.run(40.0 * period + delay).expect("it runs");
+            let sent = times(&run, "counter.sample").into_iter().filter(|t| *t < 39.5 * period);
+            let is_lossy = times(&run, "counter.sample → arrival").len() < sent.count();
+            let case = format!("every {period} s, {delay} s, {places} places");
+            assert_eq!(is_reported, places < needed, "{case}\n{report}");
+            // Where the instants of an arrival and a sample differ by rounding, one place less may do.
+            let is_tied = period == 0.1 && places + 1 == needed;
+            assert!(is_lossy == is_reported || is_tied, "{case}");
+        }
+    }
+    let report = delayed(0.01, 0.1, 10).check().to_string();
+    let message = "warning: loses messages: component `counter.sample →`: messages are sent every 0.01 s and take up to \
+                   0.1 s, so 11 can be under way, and it holds 10: let it hold 11, with `holding`, or messages are lost";
+    assert!(report.starts_with(message), "{report}");
+}
+
+/// Wherever a run goes by chance, it samples what it can.
+#[test]
+fn a_sample_passes_only_where_its_event_cannot_be_taken() {
+    let sampled = thermostat().every(Cold, 1.0).every(Warm, 1.0).build().expect("it is sound");
+    let alone = Composition::builder().add("room", &sampled).build().expect("it is one part");
+    let product = alone.product().expect("all is formulas");
+    let locations: Vec<&str> = product.locations().iter().map(|one| one.as_str()).collect();
+    assert_eq!(locations, ["off", "off, sampling warm", "on, sampling warm", "on"]);
+    let same = Composition::builder().add("room", &product).build().expect("it is one part");
+    let chances = (0..20).map(|seed| Policy::Random { seed });
+    for policy in chances.chain([Policy::Early, Policy::Late]) {
+        for room in [&alone, &same] {
+            let settings = Settings { policy, ..Settings::default() };
+            let run = room.run_with(settings, 20.5).expect("it runs");
+            assert_eq!(times(&run, "cold"), [3.0, 15.0], "{policy:?}");
+            assert_eq!(times(&run, "warm"), [9.0], "{policy:?}");
+            assert_eq!(times(&run, "missed").len(), 2 * 21 - 3, "{policy:?}");
+        }
+    }
+}
+
+/// Events of a component are due together, by one clock or by two: none passes since another is taken.
+#[test]
+fn samples_at_one_instant_wait_for_each_other() {
+    let Counter { count } = Counter::coordinates();
+    let counted = |event, step: f64| {
+        let counts = from(On).on(event).to(On).may(count.at_least(0.0));
+        counts.then(count.becomes(&count + step))
+    };
+    for (period, expected) in [(2.0, 305.0), (1.0, 505.0)] {
+        let counter = Automaton::starting_in(On)
+            .initially(Counter { count: 0.0 })
+            .transition(counted(Cold, 1.0))
+            .transition(counted(Warm, 100.0))
+            .every(Cold, 1.0)
+            .every(Warm, period)
+            .build()
+            .expect("it is sound");
+        let run = counter.run(4.0).expect("it runs");
+        assert_eq!(run.value("n", 4.0), Ok(expected));
+        assert!(times(&run, "missed").is_empty());
     }
 }

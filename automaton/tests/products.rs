@@ -1,7 +1,7 @@
 //! Compositions as one automaton.
 
 use petgraph::visit::EdgeRef;
-use pleach_automaton::composition::{ProductError, Reached};
+use pleach_automaton::composition::{Channel, ProductError, Reached};
 use pleach_automaton::{
     Automaton, Composition, CompositionError, Flow, Name, Record, Reset, coordinates, from,
 };
@@ -174,19 +174,51 @@ fn products_with_too_many_locations_are_refused() {
     assert!((13..=15).all(|count| matches!(switches(count), Err(ProductError::Locations))));
 }
 
+/// A channel is called after its output, with a dot.
 #[test]
 fn coordinates_of_one_name_make_no_composition() {
-    let named = |name: &str| {
-        let state = Record::new([(name, 0.0)]).expect("there is one name");
-        let only = Name::new("only");
-        let built = Automaton::<Name, Name, Record>::starting_in(only).initially(state).build();
-        built.expect("it is sound")
-    };
-    let parts = Composition::builder().add("a", &named("b.c")).add("a.b", &named("c"));
-    let refused = parts.build().map(|_| ());
+    let [only, tick] = ["only", "tick"].map(Name::new);
+    let state = Record::new([("tick →.held 1", 0.0), ("x", 0.0)]).expect("there are two names");
+    let built = Automaton::<Name, Name, Record>::starting_in(only)
+        .initially(state)
+        .transition(from(only).on(tick).to(only).may(always()))
+        .build();
+    let channel = Channel::holding_last("a.tick").held("a.tick →.held 1", "a.x", 0.0);
+    let refused = Composition::builder().add("a", &built.expect("it is sound")).channel(channel);
+    let refused = refused.build().map(|_| ());
     assert!(
-        matches!(refused, Err(CompositionError::VariableTwice { variable }) if variable == "a.b.c")
+        matches!(&refused, Err(CompositionError::VariableTwice { variable }) if variable == "a.tick →.held 1"),
+        "{refused:?}"
     );
+}
+
+#[test]
+fn components_have_names_that_can_be_read_back() {
+    let lamp = Automaton::<Lamp, Hand, ()>::starting_in(Dark).initially(()).build();
+    let lamp = lamp.expect("it is sound");
+    for name in ["", "p.q", "a,b", "a\"b", "a\nb"] {
+        let one = Composition::builder().add(name, &lamp).build().map(|_| ());
+        let each = Composition::builder().add_each(["first", name], &lamp).build().map(|_| ());
+        for refused in [one, each] {
+            assert_eq!(refused, Err(CompositionError::Name { name: name.to_owned() }));
+        }
+    }
+}
+
+/// Two components of one name are reported before what else is wrong with the second, or with how they are joined.
+#[test]
+fn repeated_names_are_reported_first() {
+    let lamp = |start: Option<()>| {
+        let lamp = Automaton::<Lamp, Hand, ()>::starting_in(Dark);
+        let lamp = start.into_iter().fold(lamp, pleach_automaton::Builder::initially);
+        lamp.build().expect("it is sound")
+    };
+    let one = || Composition::builder().add("lamp", &lamp(Some(())));
+    let alike = Composition::builder().add_each(["lamp"; 2], &lamp(Some(())));
+    for both in [one().add("lamp", &lamp(None)), alike.connect("lamp.q", "lamp.s")] {
+        let refused = both.build().map(|_| ());
+        assert_eq!(refused, Err(CompositionError::NameTwice { name: "lamp".to_owned() }));
+    }
 }
 
 /// From 1 on by adding 1 and by doubling, as long as the number is at most 5.

@@ -6,6 +6,7 @@ use pleach_guards::{Expression, Predicate, Valuation};
 
 use super::BuildError;
 use super::parts::{Given, Parts};
+use crate::composition::Sampling;
 use crate::flow::Rate;
 use crate::law::Command;
 use crate::lists::place_of;
@@ -201,6 +202,11 @@ impl<'a> Draft<'a> {
         if let Some((event, _)) = self.parts.samplings.iter().find(|(event, _)| !is_row(*event)) {
             return Err(BuildError::SampledWithoutRow { event: self.events[*event] });
         }
+        let fault = |(event, sampling): &(usize, Sampling)| Some((*event, sampling.fault()?));
+        if let Some((event, reason)) = self.parts.samplings.iter().find_map(fault) {
+            return Err(BuildError::Sampling { event: self.events[event], reason });
+        }
+        once(self.parts.samplings.iter().map(|(event, _)| *event), "samples", &self.events)?;
         once(self.parts.conditions.iter().map(|(event, _)| *event), "guard", &self.events)?;
         once(self.parts.described(), "flow", &self.locations)?;
         once(self.parts.restricted(), "invariant", &self.locations)

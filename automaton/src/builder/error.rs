@@ -54,12 +54,20 @@ pub enum BuildError {
         /// The event.
         event: &'static str,
     },
-    /// An event has two guards, or a location two flows or two invariants.
+    /// An event cannot be taken at even intervals.
+    #[error("event `{event}` cannot be sampled: {reason}")]
+    Sampling {
+        /// The event.
+        event: &'static str,
+        /// What is wrong with the period or the phase, and what would be right.
+        reason: String,
+    },
+    /// An event has two guards or is sampled twice, or a location has two flows or two invariants.
     #[error("`{place}` is given its {part} twice: keep one")]
     GivenTwice {
         /// The event or the location.
         place: &'static str,
-        /// What is given twice: guard, flow or invariant.
+        /// What is given twice: guard, samples, flow or invariant.
         part: &'static str,
     },
     /// A row of the table is not carried out, although others are.

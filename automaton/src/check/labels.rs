@@ -1,4 +1,4 @@
-//! What joins components: labels that are never taken, partners that never come, unread inputs.
+//! What joins components: labels that are never taken, partners that never come, full channels, unread inputs.
 //!
 //! A label is taken by all components that know its event, together. Whether they ever can is a
 //! question about their locations: those that components can be in at the same time are explored,
@@ -9,6 +9,8 @@ use super::model::{Effect, Model, Motion};
 use super::product::{Product, explore};
 use super::reachability::Reach;
 use super::report::{Finding, FindingPlace, Kind, Report, Severity};
+use crate::composition::Composition;
+use crate::composition::channel::Crowding;
 
 /// An event that components take together.
 pub(super) struct Label {
@@ -176,6 +178,22 @@ fn report_deadlocks(
             };
             report.add(finding);
         }
+    }
+}
+
+/// Channels that have fewer places than messages can be under way.
+pub(super) fn report_crowding(composition: &Composition, report: &mut Report) {
+    for component in &composition.components {
+        let Some(Crowding { places, needed, period, longest }) = component.crowding else {
+            continue;
+        };
+        let message = format!(
+            "messages are sent every {period} s and take up to {longest} s, so {needed} can be under way, and it \
+             holds {places}: let it hold {needed}, with `holding`, or messages are lost"
+        );
+        let component = Some(component.name.clone());
+        let place = FindingPlace { component, ..FindingPlace::default() };
+        report.add(Finding::new(Kind::LosesMessages, Severity::Warning, place, message));
     }
 }
 

@@ -54,6 +54,7 @@
 //! | blocked label | error | can they take it together? |
 //! | lonely label | warning | does more than one component know it? |
 //! | deadlock | warning, or note where it depends on times and values | does a component wait for labels forever? |
+//! | loses messages | warning | does a channel hold all messages that a sampled component sends? |
 //! | unread input | warning | is what is connected read? |
 //! | unexplored | note | was something too large to be looked at? |
 //!
@@ -136,6 +137,7 @@ impl Composition {
             reaches.push(reach);
         }
         labels::report_labels(&models, &reaches, &mut report);
+        labels::report_crowding(self, &mut report);
         labels::report_inputs(&models, &mut report);
         report.finished()
     }

@@ -112,6 +112,8 @@ pub enum Kind {
     BlockedLabel,
     /// A component that waits forever for labels that no other takes any more.
     Deadlock,
+    /// A channel that holds fewer messages than can be under way.
+    LosesMessages,
     /// A connected input that no formula reads.
     UnreadInput,
     /// An exploration that was given up.
@@ -247,6 +249,7 @@ impl Kind {
             Kind::RefusedLabel => "refused label",
             Kind::BlockedLabel => "blocked label",
             Kind::Deadlock => "deadlock",
+            Kind::LosesMessages => "loses messages",
             Kind::UnreadInput => "unread input",
             Kind::Unexplored => "unexplored",
         }

@@ -11,11 +11,13 @@ use pleach_guards::{EvaluationError, Valuation};
 pub use error::CompositionError;
 
 use super::blueprint::{Blueprint, Wiring};
-use super::sampler::{Sampler, Sampling};
+use super::channel::Crowding;
+use super::sampler::{Clock, Sampler, Sampling};
 use super::{Accumulation, Channel, Component, Composition};
 use crate::automaton::Automaton;
 use crate::check::model::Model;
 use crate::coordinates::Coordinates;
+use crate::named::{Name, Record};
 use crate::signals::Signal;
 
 /// A [`Composition`] under construction.
@@ -46,8 +48,10 @@ struct Part {
     signals: Vec<Signal>,
     /// The events that are taken at samples.
     samplings: Vec<(&'static str, Sampling)>,
-    /// Whether it is the clock of such an event.
-    is_clock: bool,
+    /// What it samples, if it is a clock.
+    clock: Option<Clock>,
+    /// How it is too small, if it is a channel that is.
+    crowding: Option<Crowding>,
     /// Compiles it anew, with formulas in the place of coordinates.
     compile: Arc<Compile>,
     renamed: Vec<(String, String)>,
@@ -72,6 +76,7 @@ impl CompositionBuilder {
                 self.add_in(name, automaton, state)
             }
             None => {
+                self.claim(name);
                 self.fault(CompositionError::NoInitialState { component: name.to_owned() });
                 self
             }
@@ -80,6 +85,24 @@ impl CompositionBuilder {
 
     /// Adds `automaton` as a component that starts in `state`.
     pub fn add_in<L: Location, E: Event, S: Coordinates>(
+        mut self,
+        name: &str,
+        automaton: &Automaton<L, E, S>,
+        state: S,
+    ) -> Self {
+        self.claim(name);
+        self.add_named(name, automaton, state)
+    }
+
+    /// Adds a component that joins others, such as a channel, whose name has those of events.
+    pub(super) fn add_joint(self, name: &str, joint: &Automaton<Name, Name, Record>) -> Self {
+        match joint.initial_state() {
+            Some(state) => self.add_named(name, joint, state.clone()),
+            None => self,
+        }
+    }
+
+    fn add_named<L: Location, E: Event, S: Coordinates>(
         self,
         name: &str,
         automaton: &Automaton<L, E, S>,
@@ -130,7 +153,8 @@ impl CompositionBuilder {
                 initial,
                 signals,
                 samplings,
-                is_clock: false,
+                clock: None,
+                crowding: None,
                 compile,
                 renamed: Vec::new(),
                 accumulation: None,
@@ -157,6 +181,7 @@ impl CompositionBuilder {
                 self.is_each = true;
                 continue;
             };
+            self.check_name(&name);
             self.parts.push(Part { name, ..like });
         }
         self.is_each = false;
@@ -219,7 +244,7 @@ impl CompositionBuilder {
     /// As [`every`](Self::every), at `phase` ≥ 0, `phase` + `period`, … seconds.
     pub fn every_from(mut self, event: &str, period: f64, phase: f64) -> Self {
         let sampling = Sampling { period, phase };
-        self.samplers.push(Sampler { event: event.to_owned(), sampling, misses: false });
+        self.samplers.push(Sampler { event: event.to_owned(), sampling });
         self
     }
 
@@ -240,6 +265,7 @@ impl CompositionBuilder {
         if let Some(fault) = self.fault.take() {
             return Err(fault);
         }
+        self.check_names()?;
         self = self.join_samplers()?.join_channels()?;
         self.check_names()?;
         self.wire_signals()?;
@@ -261,12 +287,20 @@ impl CompositionBuilder {
             let own_label = |event| {
                 labels.iter().position(|label| label.participants.contains(&(index, event)))
             };
+            let place_of = |name: &str| labels.iter().position(|label| label.name == name);
+            let sampling = part.clock.as_ref().map(|clock| {
+                let samples = clock.samples.iter();
+                let samples = samples.filter_map(|sample| place_of(&sample.label)).collect();
+                (clock.sampling, samples)
+            });
             let component = Component {
                 events: part.event_names().map(str::to_owned).collect(),
                 name: part.name,
                 slots: slots.slots[places.clone()].to_vec(),
                 owned: sources[places].iter().map(Option::is_none).collect(),
                 labels: (0..part.blueprint.events.len()).map(own_label).collect(),
+                sampling,
+                crowding: part.crowding,
                 blueprint: part.blueprint,
                 model: part.model,
                 group: 0,
@@ -281,6 +315,20 @@ impl CompositionBuilder {
         composition.labels = labels;
         composition.form_groups();
         Ok(composition)
+    }
+
+    /// What is wrong with a name counts before what is wrong with the component.
+    fn claim(&mut self, name: &str) {
+        self.check_name(name);
+        if self.parts.iter().any(|part| part.name == name) {
+            self.fault(CompositionError::NameTwice { name: name.to_owned() });
+        }
+    }
+
+    fn check_name(&mut self, name: &str) {
+        if name.is_empty() || name.contains(['.', ',', '"', '\n', '\r']) {
+            self.fault(CompositionError::Name { name: name.to_owned() });
+        }
     }
 
     fn fault(&mut self, fault: CompositionError) {

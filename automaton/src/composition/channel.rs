@@ -186,7 +186,8 @@ impl Channel {
         self
     }
 
-    /// The channel holds up to `capacity` ≥ 1 messages; what is sent when it is full is lost.
+    /// The channel holds up to `capacity` ≥ 1 messages; what is sent when it is full is lost. At a sample every T seconds,
+    /// up to ⌊longest / T⌋ + 1 messages are under way, with fewer places [`check`](crate::Composition::check) reports it.
     pub fn holding(mut self, capacity: usize) -> Self {
         self.capacity = capacity;
         self
@@ -216,6 +217,13 @@ impl Channel {
         self.delay.is_some() && !self.is_lasting
     }
 
+    /// How it is too small for messages that are sent every `period` seconds, if it is.
+    pub(super) fn crowding(&self, period: f64) -> Option<Crowding> {
+        let (_, longest) = self.delay.filter(|_| !self.is_lasting)?;
+        let (places, needed) = (self.capacity, under_way(longest, period));
+        (places < needed).then_some(Crowding { places, needed, period, longest })
+    }
+
     /// The channel as a component, with its labels and connections.
     pub(super) fn join(
         &self,
@@ -241,7 +249,7 @@ impl Channel {
         let automaton = Machine::of(self, send, arrive)
             .build()
             .map_err(|_| refuse("a coordinate is carried twice"))?;
-        let mut builder = builder.add(&self.name, &automaton).label(send);
+        let mut builder = builder.add_joint(&self.name, &automaton).label(send);
         if !self.inputs.is_empty() {
             builder = builder.label(arrive);
         }
@@ -253,6 +261,25 @@ impl Channel {
         }
         Ok(builder)
     }
+}
+
+/// A channel that has fewer places than messages can be under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crowding {
+    pub(crate) places: usize,
+    pub(crate) needed: usize,
+    /// Of the sender, in seconds.
+    pub(crate) period: f64,
+    /// The longest time that a message takes, in seconds.
+    pub(crate) longest: f64,
+}
+
+/// ⌊`longest` / `period`⌋ + 1: a message that is sent as another arrives may come first, and so it may where their
+/// instants differ by rounding.
+fn under_way(longest: f64, period: f64) -> usize {
+    const ROUNDING: f64 = 4.0 * f64::EPSILON;
+    let sent = longest / period * (1.0 + ROUNDING);
+    (sent as usize).saturating_add(1)
 }
 
 /// The input by which a channel reads what is sent.

@@ -73,8 +73,19 @@ impl<'a> Standing<'a> {
         state: &[f64],
     ) -> Result<Option<Joint>, Failure> {
         let leaving = &self.leaving(component)[transition];
-        let holds = self.allows(component, leaving, state)?.holds;
-        Ok(holds.then(|| Joint { label: None, parts: vec![(component, transition)] }))
+        let is_possible =
+            self.allows(component, leaving, state)?.holds && !self.can_sample(component, state)?;
+        Ok(is_possible.then(|| Joint { label: None, parts: vec![(component, transition)] }))
+    }
+
+    /// Whether `component` is a clock whose sample can be taken, and so does not pass.
+    fn can_sample(self, component: usize, state: &[f64]) -> Result<bool, Failure> {
+        match &self.composition.components[component].sampling {
+            Some((_, labels)) => {
+                Ok(self.together(labels[self.locations[component]], state)?.is_some())
+            }
+            None => Ok(false),
+        }
     }
 
     /// The jump that all participants of a label take together, if the guards of all hold.

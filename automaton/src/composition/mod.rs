@@ -141,6 +141,10 @@ pub(crate) struct Component {
     owned: Vec<bool>,
     /// By event: the label, if the event is one.
     labels: Vec<Option<usize>>,
+    /// Of a clock: when it samples, and by location the label. Where that cannot be taken, it takes its own event.
+    sampling: Option<(Sampling, Vec<usize>)>,
+    /// Of a channel that may lose messages: how it is too small.
+    pub(crate) crowding: Option<channel::Crowding>,
     /// The group that the component belongs to.
     group: usize,
     /// By coordinate: where its value is among those of the group.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use pleach_discrete::Urgency;
-use pleach_guards::{Expression, Predicate, Substitution, variable};
+use pleach_guards::{Expression, Predicate, Substitution, always, never, not, variable};
 use thiserror::Error;
 
 use super::Composition;
@@ -156,31 +156,68 @@ impl<'a> Product<'a> {
         let mut jumps: Vec<Jump> = Vec::new();
         for (component, model) in self.models.iter().enumerate() {
             let own = leaving(component).filter(|number| model.is_own(**number));
-            jumps.extend(own.map(|number| vec![(component, *number)]));
+            let is_possible = self.alone(combination, component) != never();
+            jumps.extend(own.filter(|_| is_possible).map(|number| vec![(component, *number)]));
         }
-        for label in &self.composition.labels {
-            let mut together: Vec<Jump> = vec![Vec::new()];
-            for &(component, event) in &label.participants {
-                let joining = leaving(component)
-                    .filter(|number| self.models[component].transitions[**number].event == event);
-                let joining: Vec<usize> = joining.copied().collect();
-                together = together
-                    .iter()
-                    .flat_map(|jump| {
-                        joining
-                            .iter()
-                            .map(move |number| [&jump[..], &[(component, *number)]].concat())
-                    })
-                    .collect();
-            }
-            jumps.extend(together);
+        for label in 0..self.composition.labels.len() {
+            jumps.extend(self.together(combination, label));
         }
         jumps
     }
 
+    /// The jumps from a combination by a label.
+    fn together(&self, combination: &[usize], label: usize) -> Vec<Jump> {
+        let mut together: Vec<Jump> = vec![Vec::new()];
+        for &(component, event) in &self.composition.labels[label].participants {
+            let model = &self.models[component];
+            let leaving = model.modes[combination[component]].leaving.iter();
+            let joining = leaving.filter(|number| model.transitions[**number].event == event);
+            let joining: Vec<usize> = joining.copied().collect();
+            together = together
+                .iter()
+                .flat_map(|jump| {
+                    joining.iter().map(move |number| [&jump[..], &[(component, *number)]].concat())
+                })
+                .collect();
+        }
+        together
+    }
+
+    /// When a transition may be taken, over variables of the composition.
+    fn guard(&self, (component, number): (usize, usize)) -> Predicate {
+        let guard = self.transition((component, number)).guard.predicate();
+        guard.substitute(&self.renamings[component])
+    }
+
+    /// What has to hold for a component to jump by itself: a clock lets a sample pass where it cannot be taken.
+    fn alone(&self, combination: &[usize], component: usize) -> Predicate {
+        let Some((_, labels)) = &self.composition.components[component].sampling else {
+            return always();
+        };
+        let sampled = self.together(combination, labels[combination[component]]);
+        let possible = sampled.into_iter().map(|jump| {
+            let others = jump.into_iter().filter(|(other, _)| *other != component);
+            Predicate::all(others.map(|part| self.guard(part)))
+        });
+        let possible: Vec<Predicate> = possible.collect();
+        let is_sure = possible.contains(&always());
+        if is_sure { never() } else { not(Predicate::any(possible)).negation_normal_form() }
+    }
+
+    /// Where time passes in a location of a component: of a clock, until a sample is due.
+    fn invariant(&self, component: usize, mode: usize) -> Predicate {
+        let invariant = self.models[component].modes[mode].invariant.clone();
+        let sampling = self.composition.components[component].sampling.as_ref();
+        let passing = sampling.map(|(sampling, _)| sampling.passing(mode));
+        Predicate::all([invariant].into_iter().chain(passing))
+            .substitute(&self.renamings[component])
+    }
+
     fn name(&self, combination: &[usize]) -> Name {
-        let parts = self.models.iter().zip(combination);
-        let parts: Vec<&str> = parts.map(|(model, mode)| model.modes[*mode].name).collect();
+        let parts = self.composition.components.iter().zip(combination);
+        // Clocks stand in their first location wherever time passes.
+        let parts = parts.filter(|(component, mode)| component.sampling.is_none() || **mode > 0);
+        let parts: Vec<&str> = parts.map(|(component, mode)| component.mode(*mode).name).collect();
         Name::new(&parts.join(", "))
     }
 
@@ -209,8 +246,8 @@ impl<'a> Product<'a> {
     ) -> Result<Builder<Name, Name, Record>, ProductError> {
         let name = self.name(combination);
         let (mut rates, mut invariant) = (Vec::new(), Vec::new());
-        for (component, mode) in combination.iter().enumerate() {
-            let mode = &self.models[component].modes[*mode];
+        for (component, number) in combination.iter().enumerate() {
+            let mode = &self.models[component].modes[*number];
             let renaming = &self.renamings[component];
             let Motion::Rates(listed) = &mode.motion else {
                 return Err(self.function(component, &format!("the flow of `{}`", mode.name)));
@@ -220,7 +257,7 @@ impl<'a> Product<'a> {
                     rates.push(coordinate.rate(rate.substitute(renaming)));
                 }
             }
-            invariant.push(mode.invariant.substitute(renaming));
+            invariant.push(self.invariant(component, *number));
         }
         builder = builder.flow(name, rates);
         let invariant = Predicate::all(invariant);
@@ -243,7 +280,7 @@ impl<'a> Product<'a> {
             let transition = self.transition((component, number));
             let renaming = &self.renamings[component];
             let renamed = |formula: &Expression| formula.substitute(renaming);
-            guards.push(transition.guard.predicate().substitute(renaming));
+            guards.push(self.guard((component, number)));
             urgency = match (urgency, transition.urgency) {
                 (Urgency::AtOnce, _) | (_, Urgency::AtOnce) => Urgency::AtOnce,
                 (Urgency::Must, _) | (_, Urgency::Must) => Urgency::Must,
@@ -269,6 +306,9 @@ impl<'a> Product<'a> {
             }
         }
         let (component, number) = jump[0];
+        if jump.len() == 1 {
+            guards.push(self.alone(combination, component));
+        }
         let event = self.transition((component, number)).event;
         let event = Name::new(&self.composition.components[component].events[event]);
         let target = self.name(&self.target(combination, jump));
@@ -286,7 +326,6 @@ impl<'a> Product<'a> {
 #[cfg(test)]
 mod tests {
     use pleach_discrete::vocabulary;
-    use pleach_guards::always;
 
     use super::*;
 

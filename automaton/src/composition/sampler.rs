@@ -1,22 +1,23 @@
-//! Clocks that sample: components that make others take an event at even intervals.
+//! Clocks that sample: components that make others take events at even intervals.
+
+use pleach_guards::{Predicate, always, never, variable};
 
 use super::builder::{CompositionBuilder, CompositionError};
+use super::{Composition, SimulationError};
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinate;
 use crate::edge::from;
 use crate::named::{Name, Record, kept};
 
-/// When an event is taken.
+/// An event that is to be sampled.
 pub(super) struct Sampler {
     /// `component.event`
     pub(super) event: String,
     pub(super) sampling: Sampling,
-    /// Whether the event may be impossible at a sample, which then passes.
-    pub(super) misses: bool,
 }
 
 /// At which instants something is sampled.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sampling {
     /// In seconds.
     pub(crate) period: f64,
@@ -24,44 +25,117 @@ pub(crate) struct Sampling {
     pub(crate) phase: f64,
 }
 
+/// A clock that samples events of one component, one after the other at each of its instants: in its location of that
+/// number it waits for the label, and takes it or, where it cannot be taken, lets it pass.
+#[derive(Clone, Debug)]
+pub(super) struct Clock {
+    pub(super) sampling: Sampling,
+    pub(super) samples: Vec<Sample>,
+    /// Whether the component itself has it.
+    pub(super) is_own: bool,
+    /// The number of the component.
+    pub(super) sampled: usize,
+}
+
+/// A label that a clock samples.
+#[derive(Clone, Debug)]
+pub(super) struct Sample {
+    pub(super) label: String,
+    /// Whether it may be impossible, so that the sample passes.
+    pub(super) may_pass: bool,
+}
+
 /// The time since the last sample.
 const CLOCK: &str = "τ";
 /// A sample at which the event cannot be taken.
 const MISSED: &str = "missed";
 
-impl Sampler {
-    /// The clock as a component, joined by `label`.
+impl Clock {
+    /// The clock as a component, joined by its labels.
     pub(super) fn join(
         &self,
         builder: CompositionBuilder,
-        label: &str,
     ) -> Result<CompositionBuilder, CompositionError> {
-        let Sampler { event, sampling, misses } = self;
-        let Sampling { period, phase } = *sampling;
-        let refuse = |reason| CompositionError::Sampler { event: event.clone(), reason };
-        if !(period.is_finite() && period > 0.0) {
-            return Err(refuse("its period has to be a finite time above 0"));
-        }
-        if !(phase.is_finite() && phase >= 0.0) {
-            return Err(refuse("its phase has to be a finite time of at least 0"));
-        }
-        let (ticking, sample) = (Name::new("ticking"), Name::new(label));
+        let Sampling { period, phase } = self.sampling;
+        let events: Vec<&str> = self.samples.iter().map(|sample| &*sample.label).collect();
+        let events = events.join(" and ");
+        let refuse = |reason: &str| {
+            let (event, reason) = (events.clone(), reason.to_owned());
+            CompositionError::Sampler { event, reason }
+        };
+        let places: Vec<Name> = (0..self.samples.len()).map(|place| self.place(place)).collect();
         let clock = Coordinate::<Record>::new(kept(CLOCK));
         let state =
             Record::new([(CLOCK, period - phase)]).map_err(|_| refuse("it has two clocks"))?;
-        let tick = |event: Name| {
-            let due = from(ticking).on(event).to(ticking).must(clock.at_least(period));
-            due.then(clock.becomes(0.0))
-        };
-        let mut automaton = Automaton::<Name, Name, Record>::starting_in(ticking)
+        let mut automaton = Automaton::<Name, Name, Record>::starting_in(places[0])
             .initially(state)
-            .flow(ticking, clock.rate(1.0))
-            .transition(tick(sample));
-        if *misses {
-            automaton = automaton.transition(tick(Name::new(MISSED)).priority(1));
+            .flow(places[0], clock.rate(1.0));
+        for (number, Sample { label, may_pass }) in self.samples.iter().enumerate() {
+            let next = (number + 1) % places.len();
+            let take = |event: &str| {
+                let arrow = from(places[number]).on(Name::new(event)).to(places[next]);
+                let edge = match number {
+                    0 => arrow.must(clock.at_least(period)),
+                    _ => arrow.at_once(always()),
+                };
+                if next == 0 { edge.then(clock.becomes(0.0)) } else { edge }
+            };
+            automaton = automaton.transition(take(label));
+            if *may_pass {
+                automaton = automaton.transition(take(MISSED).priority(1));
+            }
         }
         let automaton =
             automaton.build().map_err(|_| refuse("its event cannot be taken by a clock"))?;
-        Ok(builder.add(&format!("clock of {event}"), &automaton).label(label))
+        let labels = self.samples.iter().map(|sample| &*sample.label);
+        Ok(labels.fold(
+            builder.add_joint(&format!("clock of {events}"), &automaton),
+            CompositionBuilder::label,
+        ))
+    }
+
+    /// The location in which it waits for a sample.
+    fn place(&self, number: usize) -> Name {
+        match number {
+            0 => Name::new("ticking"),
+            _ => Name::new(&format!("sampling {}", self.samples[number].label)),
+        }
+    }
+}
+
+impl Sampling {
+    /// What is wrong with it, and what would be right.
+    pub(crate) fn fault(self) -> Option<String> {
+        let Sampling { period, phase } = self;
+        if !(period.is_finite() && period > 0.0) {
+            return Some(format!("its period is {period} s: it has to be finite and above 0"));
+        }
+        let has_phase = phase.is_finite() && phase >= 0.0;
+        (!has_phase).then(|| format!("its phase is {phase} s: it has to be finite and at least 0"))
+    }
+
+    /// In which states of a clock time passes where it waits for the sample of that number.
+    pub(super) fn passing(self, number: usize) -> Predicate {
+        if number == 0 { variable(CLOCK).at_most(self.period) } else { never() }
+    }
+}
+
+impl Composition {
+    /// Whether time advances from one sample to the next, up to a horizon.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError::Sampling`] with the first clock for which it does not.
+    pub(super) fn check_samplings(&self, horizon: f64) -> Result<(), SimulationError> {
+        for component in &self.components {
+            if let Some((Sampling { period, .. }, _)) = component.sampling
+                && horizon > 0.0
+                && horizon + period == horizon
+            {
+                let clock = component.name.clone();
+                return Err(SimulationError::Sampling { clock, period, horizon });
+            }
+        }
+        Ok(())
     }
 }

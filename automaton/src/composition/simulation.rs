@@ -126,13 +126,14 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     ///
-    /// [`SimulationError::Settings`] if the settings make no sense.
+    /// [`SimulationError`] if the settings make no sense, or time would not advance from one sample to the next.
     pub fn new(
         composition: &'a Composition,
         settings: Settings,
         horizon: f64,
     ) -> Result<Self, SimulationError> {
         settings.check()?;
+        composition.check_samplings(horizon)?;
         let initial = composition.components.iter().map(|component| component.blueprint.initial);
         let seed = match settings.policy {
             Policy::Random { seed } => seed,

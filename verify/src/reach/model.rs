@@ -123,6 +123,15 @@ pub enum ModelError {
         /// The name.
         parameter: String,
     },
+    /// An event is taken at samples, by a clock that is no coordinate.
+    #[error(
+        "event `{event}` is sampled, by a clock that is no coordinate of the automaton: add the \
+         automaton to a composition and enclose its `product()`, which has the clock"
+    )]
+    Sampled {
+        /// The event.
+        event: String,
+    },
     /// There is nothing to begin with.
     #[error("the automaton has no initial state: say it with `initially`")]
     Initial,
@@ -152,7 +161,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// [`ModelError`] if a part of it is a function, or it has no initial state.
+    /// [`ModelError`] if a part of it is a function, it has no initial state, or it samples events.
     pub fn of<L: Location, E: Event, S: Coordinates>(
         automaton: &Automaton<L, E, S>,
     ) -> Result<Self, ModelError> {
@@ -165,7 +174,7 @@ impl Model {
     /// # Errors
     ///
     /// [`ModelError`] if a part of the automaton is a function, it has no initial state or no such
-    /// parameter, or an input enters a flow in another way than added with a factor.
+    /// parameter, it samples events, or an input enters a flow in another way than added with a factor.
     pub fn with_uncertain<L: Location, E: Event, S: Coordinates>(
         automaton: &Automaton<L, E, S>,
         uncertain: &[Uncertain],
@@ -175,6 +184,9 @@ impl Model {
             .find(|one| !automaton.parameters().any(|(name, _)| name == one.parameter));
         if let Some(Uncertain { parameter, .. }) = unknown {
             return Err(ModelError::Parameter { parameter: parameter.clone() });
+        }
+        if let Some(event) = automaton.sampled_events().next() {
+            return Err(ModelError::Sampled { event: event.name().to_owned() });
         }
         let example = automaton.initial_state().ok_or(ModelError::Initial)?;
         let mut variables: Vec<String> = example.names().iter().map(ToString::to_string).collect();

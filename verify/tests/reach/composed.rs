@@ -3,7 +3,7 @@
 use pleach_automaton::composition::{Policy, ProductError};
 use pleach_automaton::{Automaton, Composition, Name, Record, from};
 use pleach_guards::{Interval, always};
-use pleach_verify::reach::{Answer, Effort, Forbidden, Model, Settings, verify};
+use pleach_verify::reach::{Answer, Effort, Forbidden, Model, ModelError, Settings, verify};
 
 use super::support::{Named, boxed, enclosed, escape};
 
@@ -123,6 +123,46 @@ fn a_product_runs_like_its_composition() {
     let settings = Settings { horizon: 6.0, step: 0.02, ..Settings::default() };
     let (_, enclosure) = enclosed(&product, &[], &boxed(&[(20.0, 20.0), (0.0, 0.0)]), &settings);
     assert_eq!(escape(&model, &enclosure, &other, 1e-9), None);
+}
+
+/// A thermostat that looks at the temperature once a second; it falls and rises by 0.75 a second.
+fn sampled_thermostat() -> Named {
+    let [off, on, cold, warm] = ["off", "on", "cold", "warm"].map(Name::new);
+    let room = Record::new([("T", 20.0)]).unwrap();
+    let t = &room.coordinates()[0];
+    Automaton::starting_in(off)
+        .initially(room.clone())
+        .flow(off, t.rate(-0.75))
+        .flow(on, t.rate(0.75))
+        .transition(from(off).on(cold).to(on).may(t.at_most(18.0)))
+        .transition(from(on).on(warm).to(off).may(t.at_least(22.0)))
+        .every(cold, 1.0)
+        .every(warm, 1.0)
+        .build()
+        .unwrap()
+}
+
+/// It is at 17.75 when it looks at 3 s, then rises up to 22.25 at 9 s.
+#[test]
+fn a_sampled_loop_takes_every_sample_that_it_can() {
+    let thermostat = sampled_thermostat();
+    let product = Composition::builder().add("room", &thermostat).build().unwrap();
+    let product = product.product().unwrap();
+    let values = product.initial_state().unwrap();
+    let start = boxed(&values.values().iter().map(|value| (*value, *value)).collect::<Vec<_>>());
+    let temperature = pleach_guards::variable("T");
+    let ask = |forbidden, horizon| {
+        let settings = Settings { horizon, step: 0.05, ..Settings::default() };
+        let forbidden = [Forbidden::anywhere(forbidden)];
+        let start = std::slice::from_ref(&start);
+        verify(&product, &[], start, &forbidden, &settings, &Effort::default()).unwrap()
+    };
+    assert!(matches!(ask(temperature.at_most(17.5), 5.0), Answer::Holds(_)));
+    assert!(matches!(ask(temperature.at_least(22.26), 20.0), Answer::Holds(_)));
+    let Answer::Violated(run) = ask(temperature.at_most(17.8), 5.0) else { panic!("it is there") };
+    assert!((run.margin - 0.05).abs() < 1e-9, "{}", run.margin);
+    let alone = Model::of(&thermostat).map(|_| ());
+    assert!(matches!(alone, Err(ModelError::Sampled { event }) if event == "cold"));
 }
 
 #[test]

@@ -4,33 +4,44 @@ use pleach_guards::{Expression, Substitution, always, variable};
 
 use super::{CompositionBuilder, CompositionError, Part};
 use crate::composition::blueprint::{Change, Leaving, Mode, ModeMotion};
-use crate::composition::sampler::Sampler;
+use crate::composition::sampler::{Clock, Sample, Sampler};
 use crate::composition::{Component, Composition, Label};
 use crate::signals::{Signal, resolved};
 
 impl CompositionBuilder {
-    /// Turns clocks that sample into components.
+    /// Turns clocks that sample into components: one for all events of a component at the same instants.
     pub(super) fn join_samplers(mut self) -> Result<Self, CompositionError> {
-        let mut sampled: Vec<String> = Vec::new();
+        let mut clocks: Vec<Clock> = Vec::new();
         let own: Vec<Sampler> = self.parts.iter().flat_map(Part::samplers).collect();
-        let (alone, clocks) = (self.parts.len() == 1, own.len());
+        let (alone, count) = (self.parts.len() == 1, own.len());
         let others = std::mem::take(&mut self.samplers);
-        for (number, sampler) in own.into_iter().chain(others).enumerate() {
-            let is_own = number < clocks;
+        for (number, Sampler { event, sampling }) in own.into_iter().chain(others).enumerate() {
+            let is_own = number < count;
             // Where there is one automaton, its clocks use its own names.
-            let brief = sampler.event.strip_prefix(&*self.parts[0].name);
+            let brief = event.strip_prefix(&*self.parts[0].name);
             let brief = brief.and_then(|it| it.strip_prefix('.')).filter(|_| alone && is_own);
-            let (label, _) = self.end_of_channel(&sampler.event, brief)?;
-            if sampled.contains(&label) {
-                let (event, reason) = (sampler.event, "it is sampled already");
+            let (label, sampled) = self.end_of_channel(&event, brief)?;
+            let mut samples = clocks.iter().flat_map(|clock| &clock.samples);
+            let is_sampled = samples.any(|sample| sample.label == label);
+            let twice = || is_sampled.then(|| "it is sampled twice: keep one".to_owned());
+            if let Some(reason) = sampling.fault().or_else(twice) {
                 return Err(CompositionError::Sampler { event, reason });
             }
-            let misses = !self.parts.iter().all(|part| part.always_takes(&label));
-            self = Sampler { misses, ..sampler }.join(self, &label)?;
-            if let Some(clock) = self.parts.last_mut() {
-                clock.is_clock = is_own;
+            let may_pass = !self.parts.iter().all(|part| part.always_takes(&label));
+            let sample = Sample { label, may_pass };
+            let is_due = |clock: &&mut Clock| {
+                (clock.sampling, clock.sampled, clock.is_own) == (sampling, sampled, is_own)
+            };
+            match clocks.iter_mut().find(is_due) {
+                Some(clock) => clock.samples.push(sample),
+                None => clocks.push(Clock { sampling, samples: vec![sample], is_own, sampled }),
             }
-            sampled.push(label);
+        }
+        for clock in clocks {
+            self = clock.join(self)?;
+            if let Some(part) = self.parts.last_mut() {
+                part.clock = Some(clock);
+            }
         }
         Ok(self)
     }
@@ -56,12 +67,23 @@ impl CompositionBuilder {
             for input in channel.carried() {
                 self.check_arrivals(input, &arrive)?;
             }
+            let crowding = self.period_of(&send).and_then(|period| channel.crowding(period));
             self = channel.join(self, &send, &arrive)?;
+            if let Some(part) = self.parts.last_mut() {
+                part.crowding = crowding;
+            }
         }
         match self.fault.take() {
             Some(fault) => Err(fault),
             None => Ok(self),
         }
+    }
+
+    /// The period in seconds at which a label is sampled.
+    fn period_of(&self, label: &str) -> Option<f64> {
+        let mut clocks = self.parts.iter().filter_map(|part| part.clock.as_ref());
+        let clock = clocks.find(|clock| clock.samples.iter().any(|one| one.label == label))?;
+        Some(clock.sampling.period)
     }
 
     /// The label of an event at which a channel begins or ends, written `component.event`, and the
@@ -241,7 +263,7 @@ impl CompositionBuilder {
 
     /// Whether there is one automaton, perhaps with clocks of its events.
     fn is_alone(&self) -> bool {
-        self.parts.iter().filter(|part| !part.is_clock).count() == 1
+        self.parts.iter().filter(|part| !part.is_own_clock()).count() == 1
     }
 
     /// Gives every coordinate that is no input a slot, and every input the slot of what it reads.
@@ -258,7 +280,7 @@ impl CompositionBuilder {
             for (coordinate, value) in part.blueprint.coordinates.iter().zip(&part.initial) {
                 if sources[number].is_none() {
                     layout.slots[number] = composition.variables.len();
-                    let name = if alone && !part.is_clock {
+                    let name = if alone && !part.is_own_clock() {
                         (*coordinate).to_owned()
                     } else {
                         format!("{}.{coordinate}", part.name)
@@ -371,8 +393,13 @@ impl Part {
         self.samplings.iter().filter_map(|(event, sampling)| {
             let place = self.blueprint.events.iter().position(|known| known == event)?;
             let event = format!("{}.{}", self.name, self.event_names().nth(place)?);
-            Some(Sampler { event, sampling: *sampling, misses: false })
+            Some(Sampler { event, sampling: *sampling })
         })
+    }
+
+    /// Whether it is a clock of events of one automaton.
+    fn is_own_clock(&self) -> bool {
+        self.clock.as_ref().is_some_and(|clock| clock.is_own)
     }
 
     /// In every location that is ever entered there is a transition with this event.

@@ -15,6 +15,15 @@ pub enum CompositionError {
         /// The name.
         name: String,
     },
+    /// A component has a name that cannot be read back where it is joined to others.
+    #[error(
+        "`{name}` cannot name a component: names stand before a dot and between commas, so they cannot be \
+         empty, nor have a dot, a comma, a quotation mark or a line break"
+    )]
+    Name {
+        /// The name.
+        name: String,
+    },
     /// Two variables have one name, since names of components or coordinates contain dots.
     #[error("two variables are called `{variable}`: rename a component or a coordinate")]
     VariableTwice {
@@ -91,8 +100,8 @@ pub enum CompositionError {
     Sampler {
         /// The event.
         event: String,
-        /// What is wrong with the period or the phase.
-        reason: &'static str,
+        /// What is wrong, and what would be right.
+        reason: String,
     },
     /// What a channel carries is read elsewhere than in the jump in which it arrives.
     #[error(

@@ -17,6 +17,19 @@ pub enum SimulationError {
     /// The horizon or the limit of rounds makes no sense.
     #[error(transparent)]
     Limit(#[from] InvalidLimit),
+    /// An event is sampled so often that time does not advance from one sample to the next.
+    #[error(
+        "the {clock} samples every {period:e} s, which numbers near the horizon, {horizon} s, do not resolve: \
+         choose a longer period"
+    )]
+    Sampling {
+        /// The clock that samples, as a component, which is called after the event.
+        clock: String,
+        /// The period in seconds.
+        period: f64,
+        /// The horizon in seconds.
+        horizon: f64,
+    },
     /// A tolerance or the resolution makes no sense.
     #[error("the settings cannot be used: {0}")]
     Settings(String),
