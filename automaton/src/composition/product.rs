@@ -208,8 +208,8 @@ impl<'a> Product<'a> {
     fn invariant(&self, component: usize, mode: usize) -> Predicate {
         let invariant = self.models[component].modes[mode].invariant.clone();
         let sampling = self.composition.components[component].sampling.as_ref();
-        let passing = sampling.map(|(sampling, _)| sampling.passing(mode));
-        Predicate::all([invariant].into_iter().chain(passing))
+        let until_due = sampling.map(|(sampling, _)| sampling.until_due(mode));
+        Predicate::all([invariant].into_iter().chain(until_due))
             .substitute(&self.renamings[component])
     }
 

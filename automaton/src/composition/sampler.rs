@@ -1,6 +1,6 @@
 //! Clocks that sample: components that make others take events at even intervals.
 
-use pleach_guards::{Predicate, always, never, variable};
+use pleach_guards::{Predicate, always, variable};
 
 use super::builder::{CompositionBuilder, CompositionError};
 use super::{Composition, SimulationError};
@@ -69,16 +69,15 @@ impl Clock {
             Record::new([(CLOCK, period - phase)]).map_err(|_| refuse("it has two clocks"))?;
         let mut automaton = Automaton::<Name, Name, Record>::starting_in(places[0])
             .initially(state)
-            .flow(places[0], clock.rate(1.0));
+            .throughout([clock.rate(1.0)]);
         for (number, Sample { label, may_pass }) in self.samples.iter().enumerate() {
             let next = (number + 1) % places.len();
             let take = |event: &str| {
                 let arrow = from(places[number]).on(Name::new(event)).to(places[next]);
-                let edge = match number {
-                    0 => arrow.must(clock.at_least(period)),
+                match number {
+                    0 => arrow.must(clock.at_least(period)).then(clock.becomes(0.0)),
                     _ => arrow.at_once(always()),
-                };
-                if next == 0 { edge.then(clock.becomes(0.0)) } else { edge }
+                }
             };
             automaton = automaton.transition(take(label));
             if *may_pass {
@@ -114,9 +113,9 @@ impl Sampling {
         (!has_phase).then(|| format!("its phase is {phase} s: it has to be finite and at least 0"))
     }
 
-    /// In which states of a clock time passes where it waits for the sample of that number.
-    pub(super) fn passing(self, number: usize) -> Predicate {
-        if number == 0 { variable(CLOCK).at_most(self.period) } else { never() }
+    /// In which states of a clock time passes where it waits for the sample of that number: until it is due.
+    pub(super) fn until_due(self, number: usize) -> Predicate {
+        variable(CLOCK).at_most(if number == 0 { self.period } else { 0.0 })
     }
 }
 

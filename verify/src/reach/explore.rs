@@ -240,7 +240,8 @@ impl Search<'_> {
             self.cross(jump, elapsed, &entering, crossing);
         }
         let within = self.inside_invariant(location, start);
-        let Some(flowing) = within.and_then(|set| self.kept_waiting(location, set)) else {
+        let waiting = within.and_then(|set| self.kept_waiting(location, set));
+        let Some(flowing) = waiting.filter(|set| !self.ends_at_once(location, set)) else {
             next.extend(self.landings(location, number, depth, &crossings));
             return Outcome::Ended { next, at_horizon: false };
         };
@@ -319,6 +320,22 @@ impl Search<'_> {
         let cut = Conjunction { half_spaces, others: Vec::new() };
         let cut = cut.cut(&bounds, self.model.variables())?;
         if cut == bounds { Some(set) } else { set.cut_to(cut) }
+    }
+
+    /// Whether all states of a set are where the flow leaves a half-space that it has to stay in, so no time passes.
+    fn ends_at_once(&self, location: usize, set: &StateSet) -> bool {
+        let flow = &self.model.locations()[location].flow;
+        let Prepared { staying, waiting, .. } = &self.prepared[location];
+        let waiting = waiting.iter().map(|(_, half_space)| half_space);
+        staying.iter().chain(waiting).any(|half_space| {
+            let (opposite, bound) = (half_space.opposite(), half_space.bound_over(set.hull()));
+            let inwards: Vec<Interval> =
+                opposite.direction.iter().map(|entry| Interval::point(*entry)).collect();
+            -set.support(&inwards) >= bound && {
+                let rates = flow.rates(self.model.variables(), set.hull());
+                half_space.rate(&rates).lower() > 0.0
+            }
+        })
     }
 
     /// The part of a stretch that flows come to.

@@ -8,8 +8,8 @@ use pleach_guards::{Expression, Interval, Predicate, Substitution, constant};
 use thiserror::Error;
 
 use super::affine::AffineFlow;
-use super::region::{Region, RegionError};
-use super::vector::IntervalMatrix;
+use super::region::{Named, Region, RegionError};
+use super::vector::{IntervalMatrix, dot};
 
 /// A hybrid automaton for sets: the data of an [`Automaton`], with inputs that are only known to
 /// lie in intervals.
@@ -149,6 +149,23 @@ pub enum ModelError {
         /// The name.
         variable: String,
     },
+}
+
+impl Dynamics {
+    /// Bounds on the rates of the variables, which have these names, in a box.
+    pub(super) fn rates(&self, variables: &[String], sides: &[Interval]) -> Vec<Interval> {
+        match self {
+            Dynamics::Affine(flow) => {
+                let inputs = flow.inputs().hull().into_iter().enumerate();
+                inputs.map(|(row, input)| dot(flow.matrix().row(row), sides) + input).collect()
+            }
+            Dynamics::Formulas(rates) => {
+                let named = Named { names: variables, sides };
+                let range = |rate: &Expression| rate.range(&named).unwrap_or(Interval::WHOLE);
+                rates.iter().map(range).collect()
+            }
+        }
+    }
 }
 
 impl Model {

@@ -203,6 +203,14 @@ impl HalfSpace {
         (self.bound + dot(&self.spread, sides)).upper()
     }
 
+    /// The rate of d · x, where x changes at `rates`.
+    pub fn rate(&self, rates: &[Interval]) -> Interval {
+        let entries = self.direction.iter().zip(&self.spread);
+        let entries: Vec<Interval> =
+            entries.map(|(entry, spread)| Interval::point(*entry) + *spread).collect();
+        dot(&entries, rates)
+    }
+
     /// d · x ≤ b is the opposite of d · x > b: the half-space with the other side, closed.
     #[must_use]
     pub fn opposite(&self) -> HalfSpace {

@@ -2,7 +2,7 @@
 
 use pleach_automaton::composition::{Policy, ProductError};
 use pleach_automaton::{Automaton, Composition, Name, Record, from};
-use pleach_guards::{Interval, always};
+use pleach_guards::{Expression, Interval, Predicate, always, constant, variable};
 use pleach_verify::reach::{Answer, Effort, Forbidden, Model, ModelError, Settings, verify};
 
 use super::support::{Named, boxed, enclosed, escape};
@@ -62,7 +62,7 @@ fn a_composition_stays_between_its_bounds() {
     assert_eq!(names, ["off, watching", "on, watching"]);
     let settings = Settings { horizon: 4.0, step: 0.02, ..Settings::default() };
     let start = boxed(&[(19.0, 21.0), (0.0, 0.0)]);
-    let temperature = pleach_guards::variable(&model.variables()[0]);
+    let temperature = variable(&model.variables()[0]);
     let ask = |forbidden| {
         let forbidden = [Forbidden::anywhere(forbidden)];
         verify(
@@ -125,14 +125,15 @@ fn a_product_runs_like_its_composition() {
     assert_eq!(escape(&model, &enclosure, &other, 1e-9), None);
 }
 
-/// A thermostat that looks at the temperature once a second; it falls and rises by 0.75 a second.
-fn sampled_thermostat() -> Named {
+/// A thermostat that looks at the temperature once a second; off, this changes at `cooling`, on, it rises by 0.75 a
+/// second.
+fn sampled_thermostat(cooling: &Expression) -> Named {
     let [off, on, cold, warm] = ["off", "on", "cold", "warm"].map(Name::new);
     let room = Record::new([("T", 20.0)]).unwrap();
     let t = &room.coordinates()[0];
     Automaton::starting_in(off)
         .initially(room.clone())
-        .flow(off, t.rate(-0.75))
+        .flow(off, t.rate(cooling))
         .flow(on, t.rate(0.75))
         .transition(from(off).on(cold).to(on).may(t.at_most(18.0)))
         .transition(from(on).on(warm).to(off).may(t.at_least(22.0)))
@@ -142,26 +143,31 @@ fn sampled_thermostat() -> Named {
         .unwrap()
 }
 
-/// It is at 17.75 when it looks at 3 s, then rises up to 22.25 at 9 s.
+/// Whether the temperature of a sampled thermostat is ever in these states.
+fn ask_of_sampled(cooling: &Expression, forbidden: Predicate, horizon: f64) -> Answer {
+    let room = Composition::builder().add("room", &sampled_thermostat(cooling)).build().unwrap();
+    let product = room.product().unwrap();
+    let start = product.initial_state().unwrap().values().iter().map(|value| (*value, *value));
+    let start = [boxed(&start.collect::<Vec<_>>())];
+    let settings = Settings { horizon, step: 0.05, ..Settings::default() };
+    let forbidden = [Forbidden::anywhere(forbidden)];
+    verify(&product, &[], &start, &forbidden, &settings, &Effort::default()).unwrap()
+}
+
+/// Falling by 0.75 a second, it is at 17.75 when it looks at 3 s, then rises up to 22.25 at 9 s. By T' = −T²/500,
+/// it is at 17.86 at 3 s.
 #[test]
 fn a_sampled_loop_takes_every_sample_that_it_can() {
-    let thermostat = sampled_thermostat();
-    let product = Composition::builder().add("room", &thermostat).build().unwrap();
-    let product = product.product().unwrap();
-    let values = product.initial_state().unwrap();
-    let start = boxed(&values.values().iter().map(|value| (*value, *value)).collect::<Vec<_>>());
-    let temperature = pleach_guards::variable("T");
-    let ask = |forbidden, horizon| {
-        let settings = Settings { horizon, step: 0.05, ..Settings::default() };
-        let forbidden = [Forbidden::anywhere(forbidden)];
-        let start = std::slice::from_ref(&start);
-        verify(&product, &[], start, &forbidden, &settings, &Effort::default()).unwrap()
-    };
-    assert!(matches!(ask(temperature.at_most(17.5), 5.0), Answer::Holds(_)));
-    assert!(matches!(ask(temperature.at_least(22.26), 20.0), Answer::Holds(_)));
-    let Answer::Violated(run) = ask(temperature.at_most(17.8), 5.0) else { panic!("it is there") };
+    let t = variable("T");
+    let ask = |forbidden, horizon| ask_of_sampled(&constant(-0.75), forbidden, horizon);
+    assert!(matches!(ask(t.at_most(17.74), 20.0), Answer::Holds(_)));
+    assert!(matches!(ask(t.at_least(22.26), 20.0), Answer::Holds(_)));
+    let Answer::Violated(run) = ask(t.at_most(17.8), 5.0) else { panic!("it is there") };
     assert!((run.margin - 0.05).abs() < 1e-9, "{}", run.margin);
-    let alone = Model::of(&thermostat).map(|_| ());
+    let square = -0.002 * t.power(2.0);
+    assert!(matches!(ask_of_sampled(&square, t.at_most(17.5), 5.0), Answer::Holds(_)));
+    assert!(matches!(ask_of_sampled(&square, t.at_most(17.9), 5.0), Answer::Violated(_)));
+    let alone = Model::of(&sampled_thermostat(&square)).map(|_| ());
     assert!(matches!(alone, Err(ModelError::Sampled { event }) if event == "cold"));
 }
 
