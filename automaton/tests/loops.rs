@@ -337,6 +337,7 @@ fn channels_that_lose_messages_are_reported() {
 fn a_sample_passes_only_where_its_event_cannot_be_taken() {
     let sampled = thermostat().every(Cold, 1.0).every(Warm, 1.0).build().expect("it is sound");
     let alone = Composition::builder().add("room", &sampled).build().expect("it is one part");
+    assert!(alone.check().findings().is_empty(), "{}", alone.check());
     let product = alone.product().expect("all is formulas");
     let locations: Vec<&str> = product.locations().iter().map(|one| one.as_str()).collect();
     assert_eq!(locations, ["off", "off, sampling warm", "on, sampling warm", "on"]);

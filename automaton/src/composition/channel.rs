@@ -186,8 +186,9 @@ impl Channel {
         self
     }
 
-    /// The channel holds up to `capacity` ≥ 1 messages; what is sent when it is full is lost. At a sample every T seconds,
-    /// up to ⌊longest / T⌋ + 1 messages are under way, with fewer places [`check`](crate::Composition::check) reports it.
+    /// The channel holds up to `capacity` ≥ 1 messages; what is sent when it is full is lost. Of messages that are sent
+    /// every T seconds, up to ⌊longest / T⌋ + 1 are under way: [`check`](crate::Composition::check) reports a channel
+    /// that holds fewer.
     pub fn holding(mut self, capacity: usize) -> Self {
         self.capacity = capacity;
         self
@@ -274,8 +275,8 @@ pub(crate) struct Crowding {
     pub(crate) longest: f64,
 }
 
-/// ⌊`longest` / `period`⌋ + 1: a message that is sent as another arrives may come first, and so it may where their
-/// instants differ by rounding.
+/// ⌊`longest` / `period`⌋ + 1. A message that is sent while another arrives may come first, also where rounding alone
+/// puts it later.
 fn under_way(longest: f64, period: f64) -> usize {
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
     let sent = longest / period * (1.0 + ROUNDING);

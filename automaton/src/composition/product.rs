@@ -55,6 +55,9 @@ impl Composition {
     /// is one transition for each choice of transitions of its participants; it is forced if one of
     /// them is.
     ///
+    /// Clocks that sample are coordinates, and no part of the names of locations, except where further events are
+    /// sampled at the same instant. A sample passes where its event cannot be taken.
+    ///
     /// Every run of the composition is one of the product. Where guards of several transitions on one
     /// label hold at once, of which a component takes the first, the product may take each.
     ///
