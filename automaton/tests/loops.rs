@@ -259,7 +259,7 @@ fn events_that_are_sampled_in_vain_or_twice_are_refused() {
         ),
     ];
     for (builder, reason) in refused {
-        let fault = builder.build().err().expect("it cannot be sampled").to_string();
+        let fault = builder.build().expect_err("it cannot be sampled").to_string();
         assert_eq!(fault, format!("event `cold` cannot be sampled: {reason}"));
     }
     let nothing = Composition::builder().every("counter.sample", 1.0).build();
@@ -276,7 +276,7 @@ fn samples_that_numbers_do_not_resolve_are_refused() {
             .build()
             .expect("it fits")
     };
-    let refused = sampled(1e-300).run(15.0).err().expect("time does not advance").to_string();
+    let refused = sampled(1e-300).run(15.0).expect_err("time does not advance").to_string();
     for part in ["clock of counter.sample", "1e-300 s", "15 s", "longer period"] {
         assert!(refused.contains(part), "{refused}");
     }
