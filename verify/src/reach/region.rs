@@ -204,7 +204,7 @@ impl HalfSpace {
     }
 
     /// The rate of d · x, where x changes at `rates`.
-    pub fn rate(&self, rates: &[Interval]) -> Interval {
+    pub(super) fn rate(&self, rates: &[Interval]) -> Interval {
         let entries = self.direction.iter().zip(&self.spread);
         let entries: Vec<Interval> =
             entries.map(|(entry, spread)| Interval::point(*entry) + *spread).collect();
