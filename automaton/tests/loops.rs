@@ -262,6 +262,9 @@ fn events_that_are_sampled_in_vain_or_twice_are_refused() {
         let fault = builder.build().expect_err("it cannot be sampled").to_string();
         assert_eq!(fault, format!("event `cold` cannot be sampled: {reason}"));
     }
+    let missed = Composition::builder().add("counter", &counter()).rename("sample", "missed");
+    let missed = missed.label("missed").every("counter.missed", 1.0).build();
+    assert!(matches!(missed, Err(CompositionError::Sampler { event, .. }) if event == "missed"));
     let nothing = Composition::builder().every("counter.sample", 1.0).build();
     assert!(matches!(nothing, Err(CompositionError::Empty)));
 }

@@ -63,6 +63,9 @@ impl Clock {
             let (event, reason) = (events.clone(), reason.to_owned());
             CompositionError::Sampler { event, reason }
         };
+        if self.samples.iter().any(|sample| sample.label == MISSED) {
+            return Err(refuse("clocks call a sample that passes so: rename the event"));
+        }
         let places: Vec<Name> = (0..self.samples.len()).map(|place| self.place(place)).collect();
         let clock = Coordinate::<Record>::new(kept(CLOCK));
         let state =
