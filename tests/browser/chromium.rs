@@ -10,7 +10,8 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 const FLAGS: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
                      --disable-background-networking --disable-component-update --disable-sync \
-                     --hide-scrollbars --remote-debugging-pipe";
+                     --hide-scrollbars --force-prefers-reduced-motion \
+                     --remote-debugging-pipe";
 
 /// A page in a browser of its own.
 pub struct Page {
@@ -67,6 +68,12 @@ impl Page {
         }
     }
 
+    /// Opens the page again.
+    pub fn reload(&mut self) {
+        self.call("Page.reload", json!({}));
+        self.wait_for("Page.loadEventFired");
+    }
+
     fn navigate(&mut self, address: &str) {
         self.call("Page.navigate", json!({ "url": address }));
         self.wait_for("Page.loadEventFired");
@@ -80,9 +87,10 @@ impl Page {
         self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
-    /// As if the system were set to `scheme`, `light` or `dark`.
-    pub fn prefer(&mut self, scheme: &str) {
-        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+    /// As if the system were set to `value` for `feature`, such as `dark` for `color-scheme`. Pages open with less
+    /// motion preferred.
+    pub fn prefer(&mut self, feature: &str, value: &str) {
+        let features = json!([{ "name": format!("prefers-{feature}"), "value": value }]);
         self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
     }
 

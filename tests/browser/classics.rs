@@ -85,7 +85,7 @@ fn classics_play() {
         let mut page = Page::open(&kept(name, &text), [1360, 900]);
         page.value("pleach.player.seek(pleach.player.end * 0.3)");
         for scheme in ["light", "dark"] {
-            page.prefer(scheme);
+            page.prefer("color-scheme", scheme);
             page.photograph(&format!("{name}-{scheme}"));
         }
         page.resize([400, 820]);

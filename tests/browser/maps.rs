@@ -100,7 +100,7 @@ fn the_floor_lies_over_the_map() {
         );
         assert!(apart < 1.0, "{map}: {apart}");
         page.photograph(&format!("look-{}", map.replace('.', "-")));
-        page.prefer("dark");
+        page.prefer("color-scheme", "dark");
         page.photograph(&format!("look-{}-dark", map.replace('.', "-")));
         assert_content(&page);
     }

@@ -298,6 +298,33 @@ fn study_one_is_played_with_pointer_and_keys() {
     assert_content(&page);
 }
 
+/// A page begins to play, but not where the system asks for less motion, nor where the address names an instant. What
+/// is selected stays on the screen.
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn a_page_begins_to_play() {
+    let run = Run::of("study-1");
+    let mut page = open("study-1-begins", &run.trace);
+    let wait = "new Promise(done => setTimeout(done, 700))";
+    page.value(wait);
+    assert_eq!(page.number("pleach.player.at"), 0.0);
+
+    page.prefer("reduced-motion", "no-preference");
+    page.reload();
+    page.value(wait);
+    let played = page.number("pleach.player.at");
+    assert!(played > 1.0, "after 0.7 s the run is at {played}");
+    page.click("#story .told[data-event='0']", None);
+    page.value(wait);
+    assert_eq!(page.value("pleach.player.at"), page.value("pleach.player.events[0].at"));
+
+    page.value("location.hash = 'at=0'");
+    page.reload();
+    page.value(wait);
+    assert_eq!(page.number("pleach.player.at"), 0.0);
+    assert_content(&page);
+}
+
 #[test]
 #[ignore = "needs Chromium: tests/browser/check"]
 fn a_robot_under_the_pointer_tells_its_facts() {
@@ -362,7 +389,7 @@ fn pages_are_small_and_seek_in_time() {
             assert_numbers(&mut page, snapshot);
         }
         for scheme in ["light", "dark"] {
-            page.prefer(scheme);
+            page.prefer("color-scheme", scheme);
             page.value("pleach.player.seek(pleach.player.end * 0.55)");
             page.photograph(&format!("{name}-{scheme}"));
         }

@@ -44,8 +44,9 @@ class Player {
     this.announce();
   }
 
-  /** To the instant just after an event. */
+  /** To the instant just after an event, and stays there. */
   seekEvent(index) {
+    this.pause();
     this.seek(this.events[index].at, index + 1);
   }
 

@@ -39,8 +39,7 @@ class Transport {
     Object.assign(this, { player, clock, isTelling, hasGlyphs: Boolean(glyph) });
     const button = (sign, title, act) =>
       element("button", { type: "button", title, "aria-label": title, onclick: act }, icon(sign));
-    this.toggle = button("play", "Play (space)", () => player.toggle());
-    this.toggle.id = "play";
+    this.toggle = element("button", { type: "button", id: "play", onclick: () => player.toggle() });
     this.now = element("output", { class: "clock" });
     this.speed = element("select", { title: "Speed (− +)", "aria-label": "Speed", onchange: event => {
       player.speed = Number(event.target.value);
@@ -120,8 +119,9 @@ class Transport {
     const { player } = this;
     if (player.isPlaying !== this.isShownPlaying) {
       this.isShownPlaying = player.isPlaying;
-      this.toggle.replaceChildren(icon(player.isPlaying ? "pause" : "play"));
-      this.toggle.title = player.isPlaying ? "Pause (space)" : "Play (space)";
+      const [sign, name] = player.isPlaying ? ["pause", "Pause"] : ["play", "Play"];
+      this.toggle.replaceChildren(icon(sign), name);
+      this.toggle.title = `${name} (space)`;
     }
     this.now.textContent = this.clock(player.at, player.passed);
     this.speed.value = player.speed;
@@ -189,7 +189,10 @@ class Story {
     const entry = this.entries[current];
     if (!entry) { this.list.scrollTop = 0; return; }
     entry.setAttribute("aria-current", "true");
-    this.list.scrollTop = entry.offsetTop - this.entries[0].offsetTop - this.list.clientHeight / 2;
+    // Entries are whole lines high: from the top of one on, none is cut.
+    const begin = this.entries[0].offsetTop, middle = entry.offsetTop - this.list.clientHeight / 2;
+    const first = this.entries.find(one => one.offsetParent && one.offsetTop >= middle);
+    this.list.scrollTop = first.offsetTop - begin;
   }
 }
 
