@@ -325,6 +325,26 @@ fn a_page_begins_to_play() {
     assert_content(&page);
 }
 
+/// No event in the list is cut, wherever the run stands.
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn the_list_of_events_shows_whole_entries() {
+    let run = Run::of("study-1");
+    let mut page = open("study-1-list", &run.trace);
+    for step in [0, 50, 169, 293, 500, 800] {
+        let cut = page.value(&format!(
+            "(() => {{ pleach.player.seek({step}); \
+               const list = document.querySelector('#story .list').getBoundingClientRect(); \
+               return [...document.querySelectorAll('#story .told')].filter(entry => {{ \
+                 const {{ top, height }} = entry.getBoundingClientRect(), lines = (list.top - top) / 21; \
+                 return height && (top < list.top - 0.5 && top + height > list.top + 0.5 \
+                   || Math.abs(lines - Math.round(lines)) > 0.03); }}).length; }})()"
+        ));
+        assert_eq!(cut, 0, "at k = {step}");
+    }
+    assert_content(&page);
+}
+
 #[test]
 #[ignore = "needs Chromium: tests/browser/check"]
 fn a_robot_under_the_pointer_tells_its_facts() {

@@ -300,34 +300,40 @@ function timeMarks(mission) {
   };
 }
 
-/** The switches of the layers, and what the marks mean. */
-function layerPanel(parent, mission, plan) {
-  const boxes = LAYERS.map(({ key, name, about, on }) => element("label", { title: about }, element("input", {
-    type: "checkbox", checked: on, "data-layer": key, onchange: event => {
-      plan.layers.set(key, event.target.checked);
-      plan.surface.paint();
-    },
-  }), ` ${name}`));
-  const marks = mission.marks.map(mark => {
+/** What the marks mean. */
+function markPanel(parent, mission) {
+  const sample = draw => {
     const canvas = element("canvas", { class: "sample" });
     const paint = () => {
       const density = window.devicePixelRatio || 1;
       [canvas.width, canvas.height] = [22 * density, 22 * density];
       const context = canvas.getContext("2d");
       context.setTransform(density, 0, 0, density, 0, 0);
-      drawMark(context, mark, [11, 11], 5.4);
+      draw(context, [11, 11], 5.4);
     };
     paint();
     theme.listeners.push(paint);
-    return element("span", {}, canvas, mark.name);
-  });
-  const moments = mission.moments.map(moment => element("span", {}, momentGlyph(moment.strokes), moment.name));
+    return canvas;
+  };
+  const row = (picture, name) => element("span", {}, picture, name);
+  const marks = mission.marks.map(mark => row(sample((context, spot, radius) => drawMark(context, mark, spot, radius)), mark.name));
+  const moments = mission.moments.map(moment => row(momentGlyph(moment.strokes), moment.name));
   const attendance = ATTENDANCE.filter(mark => mission.events.some(event => event.event === mark.name))
-    .map(mark => element("span", {}, momentGlyph(mark.strokes), mark.about));
-  parent.append(
-    element("details", { open: true }, element("summary", {}, "Marks"), element("div", { class: "boxes" }, ...marks, ...moments, ...attendance)),
-    element("details", { open: true }, element("summary", {}, "Layers"), element("div", { class: "boxes" }, ...boxes),
-      element("p", { class: "quiet" }, "Links reach through walls; robots do not.")));
+    .map(mark => row(mark.name === "stopped" ? sample(drawStopped) : momentGlyph(mark.strokes), mark.about));
+  parent.append(element("details", { open: true }, element("summary", {}, "Marks"),
+    element("div", { class: "boxes" }, ...marks, ...attendance, ...moments)));
+}
+
+/** The switches of the layers. */
+function layerPanel(parent, plan) {
+  const boxes = LAYERS.map(({ key, name, about, on, colour }) => element("label", { title: about }, element("input", {
+    type: "checkbox", checked: on, "data-layer": key, onchange: event => {
+      plan.layers.set(key, event.target.checked);
+      plan.surface.paint();
+    },
+  }), colour ? element("i", { style: `background: var(--${colour})` }) : "", ` ${name}`));
+  parent.append(element("details", { open: true }, element("summary", {}, "Layers"), element("div", { class: "boxes" }, ...boxes),
+    element("p", { class: "quiet" }, "Links reach through walls; robots do not.")));
 }
 
 /** The strokes of a moment as a small picture. */
@@ -348,7 +354,8 @@ function showMission(data) {
   const lanes = mission.count ? mission.lanes() : [];
   const plan = new Plan(part("stage"), mission, player, selection);
   new Facts(part("facts"), mission, player, selection);
-  layerPanel(part("layers"), mission, plan);
+  markPanel(part("marks"), mission);
+  layerPanel(part("layers"), plan);
   new Transport(part("transport"), player, {
     lanes, clock, unit: speed => `${speed} periods/s`, ...timeMarks(mission),
   });

@@ -5,14 +5,14 @@ const TRAIL_STEPS = 60;
 /** White around the workspace, in pixels. */
 const PLAN_MARGIN = 14;
 const LAYERS = [
-  { key: "links", name: "links", about: "communication links in use, thickness ∝ T·R; they reach through walls", on: true },
-  { key: "tree", name: "tree", about: "edges of the tree network", on: true },
-  { key: "path", name: "path Σ", about: "the robots that shift when a recruit is called", on: true },
-  { key: "geodesic", name: "way to the task", about: "the leader's shortest way to its task", on: true },
-  { key: "trails", name: "trails", about: `where robots were in the last ${TRAIL_STEPS} periods`, on: true },
+  { key: "links", name: "links", about: "communication links in use, thickness ∝ T·R; they reach through walls", on: true, colour: "link" },
+  { key: "tree", name: "tree", about: "edges of the tree network", on: true, colour: "tree" },
+  { key: "path", name: "path Σ", about: "the robots that shift when a recruit is called", on: true, colour: "recruit" },
+  { key: "geodesic", name: "way to the task", about: "the leader's shortest way to its task", on: true, colour: "task" },
+  { key: "trails", name: "trails", about: `where robots were in the last ${TRAIL_STEPS} periods`, on: true, colour: "trail" },
   { key: "labels", name: "labels", about: "numbers of nodes and tasks", on: true },
   { key: "discs", name: "discs", about: "discs of radius ρ, to scale, where marks leave them visible", on: true },
-  { key: "free_space", name: "free space", about: "the outline of W_f, ρ from the walls", on: true },
+  { key: "free_space", name: "free space", about: "the outline of W_f, ρ from the walls", on: true, colour: "limit" },
   { key: "cells", name: "cells", about: "Voronoi cells of the robots, ρ inwards, eq. (17)", on: false },
   { key: "range", name: "range", about: "of the robot shown: fully reliable links, and any links", on: true },
 ];
@@ -92,7 +92,7 @@ class Plan {
     this.drawTasks(scene);
     this.drawPosts(scene);
     this.drawNodes(scene, has("discs"));
-    if (has("labels")) this.places.draw(context, this.labels(scene), this.floor, radius);
+    if (has("labels")) this.places.draw(context, this.labels(scene), this.floor, this.edges(scene), radius);
   }
 
   outline(loops, { spot }) {
@@ -323,7 +323,7 @@ class Plan {
         context.globalAlpha = 1;
       }
       drawMark(context, mark, [x, y], radius);
-      if (mission.isAbsent(node, step)) drawCross(context, [x, y], 1.7 * radius);
+      if (mission.isAbsent(node, step)) drawCross(context, [x, y], radius);
       const isShown = node === this.selection.shown;
       if (!team.includes(node) && !isShown) continue;
       context.beginPath();
@@ -337,16 +337,23 @@ class Plan {
 
   /** What is written beside nodes and tasks, the most telling first. */
   labels({ view, step, spots, radius }) {
-    const { mission } = this;
+    const { mission } = this, team = mission.value("active_team", step);
     const order = spots.map((_, node) => node).sort((one, other) => mission.rank(one, step) - mission.rank(other, step));
+    // As far away as the ring or the mark reaches.
+    const reach = node => radius * (team.includes(node) ? 2.2 : node < mission.robots ? 1.5 : 1.8);
     const nodes = order.map(node => ({
       key: node, spot: spots[node], colour: node < mission.robots ? "ink" : "access-point",
-      text: mission.label(node), reach: radius * 1.5,
+      text: mission.label(node), reach: reach(node),
       mayGo: mission.markOf(node, step).key === "redundant" && node !== this.selection.shown,
     }));
     const tasks = mission.scenario.task.map(({ position }, number) => ({
       key: `task ${number}`, spot: view.spot(position), colour: "task", text: `task ${number}`, reach: radius * 2.1,
     }));
     return [...tasks, ...nodes];
+  }
+
+  /** The edges of the tree, which labels avoid. */
+  edges({ step, spots }) {
+    return this.mission.value("tree", step).map(edge => edge.map(node => spots[node])).filter(ends => ends.every(Boolean));
   }
 }

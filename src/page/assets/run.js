@@ -146,7 +146,7 @@ function showRun(data) {
   new RunFacts(part("facts"), run, player);
   new Transport(part("transport"), player, { clock, unit: speed => `× ${speed}` });
   new Story(part("story"), player, { clock });
-  part("layers").remove();
+  ["marks", "layers"].forEach(name => part(name).remove());
   document.body.classList.add("run");
   const charts = part("charts");
   new Strips(charts, player, selection, {
