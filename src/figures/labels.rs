@@ -46,6 +46,8 @@ const OVERLAP_COST: f64 = 4.0;
 const OUTSIDE_COST: f64 = 1000.0;
 /// What standing on a wall costs, where dark type is hard to read.
 const WALL_COST: f64 = 40.0;
+/// White at the sides of a label.
+const AIR: f64 = 2.5;
 /// What a crossed stroke costs.
 const STROKE_COST: f64 = 12.0;
 
@@ -82,7 +84,7 @@ impl<'a> LabelPlaces<'a> {
 
     /// Chooses the place of a label beside a mark, and returns the middle of its base line.
     pub(super) fn place(&mut self, label: &str, size: f64, mark: Spot, radius: f64) -> Spot {
-        let half = [text_width(label, size) / 2.0 + 1.0, size * 0.42];
+        let half = [text_width(label, size) / 2.0 + AIR, size * 0.42];
         let candidates = [1.5, 6.5].into_iter().flat_map(|gap| {
             DIRECTIONS.iter().enumerate().map(move |(rank, direction)| {
                 let angle = direction * std::f64::consts::FRAC_PI_4;

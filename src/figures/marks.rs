@@ -119,21 +119,28 @@ impl Mark {
         }
     }
 
-    /// Draws the mark so that it looks as large as a dot of this radius.
+    /// Draws the mark so that it looks as large as a dot of this radius, with a pale rim that parts marks that lie on
+    /// each other.
     pub(super) fn draw(self, [x, y]: Spot, radius: f64, tooltip: &str) -> Group {
+        let width = (radius * 0.14).clamp(0.6, 1.1);
+        let rim = |shape: Group| {
+            shape.set("stroke", palette::FLOOR).set("stroke-width", number(width + RIM))
+        };
         let group = layer("mark")
             .set("fill", self.colour())
             .set("stroke", palette::INK)
-            .set("stroke-width", number((radius * 0.14).clamp(0.6, 1.1)))
+            .set("stroke-width", number(width))
             .set("stroke-linejoin", "round")
             .add(Title::new(tooltip));
         match self.shape() {
             Shape::Polygon(spots) => {
                 let spots = spots.into_iter().map(|[dx, dy]| [x + radius * dx, y + radius * dy]);
-                group.add(Polygon::new().set("points", corners(spots)))
+                let shape = Polygon::new().set("points", corners(spots));
+                group.add(rim(Group::new().add(shape.clone()))).add(shape)
             }
             Shape::Disc { radius: share, heart } => {
-                let group = group.add(disc([x, y], radius * share));
+                let shape = disc([x, y], radius * share);
+                let group = group.add(rim(Group::new().add(shape.clone()))).add(shape);
                 if heart == 0.0 {
                     return group;
                 }
@@ -154,6 +161,8 @@ pub(crate) enum Shape {
     Disc { radius: f64, heart: f64 },
 }
 
+/// How much wider than its outline the pale rim of a mark is.
+const RIM: f64 = 2.4;
 /// Radius of the ring that is left of a task that is over, in arms of its cross.
 const OVER_RING: f64 = 1.2;
 

@@ -17,10 +17,14 @@ use super::plan::{PaperWalls, Plan};
 const ROOM: [f64; 2] = [692.0, 660.0];
 /// Upper left corner of that room.
 const CORNER: Spot = [30.0, 84.0];
+/// A plan that is lower than this in that room is drawn over the whole width of the sheet, with the legend below.
+const LEAST_HEIGHT: f64 = 370.0;
 /// Where narrow plans end at least, so that titles have room.
 const LEAST_WIDTH: f64 = 480.0;
 /// Between the drawing and the legend.
 const GUTTER: f64 = 30.0;
+/// From the upper edge of the drawing to the base line of the first row of a legend beside it.
+const LEGEND_TOP: f64 = 8.0;
 /// Space below the drawing.
 const FOOT: f64 = 26.0;
 /// Width of a link that is used all the time, T·R = 1, on the paper.
@@ -49,16 +53,27 @@ impl Plan {
     /// Renders one instant as an SVG document, as wide as plan and legend ask for.
     ///
     /// Links lie below, tree edges above them, marks on top; the legend stands beside the
-    /// drawing. Equal input gives equal bytes.
+    /// drawing, or below one that is wide and low. Equal input gives equal bytes.
     #[must_use]
     pub fn render(&self, scene: &Scene<'_>) -> String {
-        let view = View::fit(&self.scenario.workspace.boundary, CORNER, ROOM);
-        let (corner, size) = view.frame();
-        let left = (corner[0] + size[0]).max(LEAST_WIDTH) + GUTTER;
-        let (legend, foot) = legend::draw(self, &view, left);
-        let height = (corner[1] + size[1]).max(foot) + FOOT;
+        let any_stopped = !scene.snapshot.absent.is_empty();
+        let boundary = &self.scenario.workspace.boundary;
+        let beside = View::fit(boundary, CORNER, ROOM);
+        let (_, [width, height]) = beside.frame();
+        let (view, legend, sheet_size) = if height < LEAST_HEIGHT {
+            let width = palette::WIDTH - 2.0 * CORNER[0];
+            let view = View::fit(boundary, CORNER, [width, ROOM[1]]);
+            let (_, [_, height]) = view.frame();
+            let corner = [CORNER[0], CORNER[1] + height + GUTTER + LEGEND_TOP];
+            let (legend, foot) = legend::below(self, &view, any_stopped, corner, width);
+            (view, legend, [palette::WIDTH, foot + FOOT])
+        } else {
+            let left = (CORNER[0] + width).max(LEAST_WIDTH) + GUTTER;
+            let corner = [left, CORNER[1] + LEGEND_TOP];
+            let (legend, foot) = legend::beside(self, &beside, any_stopped, corner);
+            (beside, legend, [left + legend::WIDTH, (CORNER[1] + height).max(foot) + FOOT])
+        };
         let picture = Picture { plan: self, scene, view, radius: self.mark_radius(&view, scene) };
-        let sheet_size = [left + legend::WIDTH, height];
         let document: Document =
             headed(sheet_size, scene.title, &subtitle(scene.snapshot), self.is_plain);
         document

@@ -198,6 +198,40 @@ fn every_mark_has_its_own_colour_and_shape_and_stands_in_the_legend() {
     }
 }
 
+/// The numbers of an attribute, in the order of the document.
+fn numbers(svg: &str, name: &str) -> Vec<f64> {
+    let begin = format!(" {name}=\"");
+    svg.split(&begin).skip(1).map(|rest| rest.split('"').next().unwrap().parse().unwrap()).collect()
+}
+
+/// A corridor is drawn over the whole width of the sheet, and nothing of its legend stands beside it.
+#[test]
+fn the_legend_stands_below_a_wide_plan() {
+    let mut scenario = study_one();
+    scenario.workspace.boundary = vec![[0.0, 0.0], [6.0, 0.0], [6.0, 1.5], [0.0, 1.5]];
+    let plan = Plan::new(&scenario, Vec::new());
+    let picture = plan.render(&Scene { snapshot: &moment(5, 0.5), title: "", trails: &[] });
+    let (plan, legend) = picture.split_once("class=\"legend\"").expect("a legend");
+    let walls = &plan[plan.find("class=\"plan\"").expect("walls")..];
+    let [top, height] = ["y", "height"].map(|name| numbers(walls, name)[0]);
+    assert!(numbers(walls, "width")[0] > 900.0);
+    assert!(numbers(legend, "y").into_iter().all(|y| y > top + height));
+    assert_eq!(legend.matches("<text").count(), Mark::ALL.len() + 1 + 3 + 6 + 2);
+}
+
+#[test]
+fn a_stopped_robot_is_crossed_out_and_the_legend_says_so() {
+    let plan = Plan::new(&study_one(), Vec::new());
+    let of = |absent: Vec<usize>| {
+        let snapshot = Snapshot { absent, ..moment(5, 0.5) };
+        plan.render(&Scene { snapshot: &snapshot, title: "", trails: &[] })
+    };
+    for (picture, crosses) in [(of(vec![]), 0), (of(vec![2]), 2)] {
+        assert_eq!(picture.matches("class=\"stopped\"").count(), crosses);
+        assert_eq!(picture.contains("cross: stopped"), crosses > 0);
+    }
+}
+
 #[test]
 fn every_role_has_a_mark_of_its_own() {
     let mut snapshot = moment(0, 0.0);
