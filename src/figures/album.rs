@@ -13,7 +13,7 @@ use crate::story;
 
 use super::animation::Film;
 use super::canvas::quantity;
-use super::curves::{Chart, Curve, DISTINCT_CURVES, Limit, Sign};
+use super::curves::{Alike, Chart, Curve, Limit, Sign};
 use super::lanes::Lanes;
 use super::palette;
 use super::plan::Plan;
@@ -22,6 +22,10 @@ use super::series::Series;
 
 /// The file of the animation.
 pub const ANIMATION: &str = "animation.svg";
+/// The most curves of robots in a figure.
+const MOST_CURVES: usize = 6;
+/// Robots are alike that depart from the median by less than this share of the largest departure.
+const ALIKE: f64 = 0.25;
 /// Ways shorter than this share of ρ are not drawn.
 const TRAIL_STEP: f64 = 0.25;
 
@@ -224,20 +228,23 @@ impl Album {
                 "distance (scenario's unit)",
             )
         };
+        let (curves, alike) = robot_curves(&self.residuals);
         let residuals = Chart {
+            curves,
+            alike,
             subtitle:
                 "what a robot can send beyond what it must, eq. (5): no curve falls below the \
                        dashed line while the network carries all traffic"
                     .to_owned(),
-            curves: robot_curves(&self.residuals),
             limits: vec![Limit { value: -tolerance, label: limit_name(tolerance) }],
             ..self.chart("Residuals cᵢ of all robots", "cᵢ (share of the radio's rate)")
         };
+        let (curves, alike) = robot_curves(&self.multipliers);
         let multipliers = Chart {
+            curves,
+            alike,
             subtitle: "the price of rate at every robot; it settles when the routes do, eq. (14)"
                 .to_owned(),
-            curves: robot_curves(&self.multipliers),
-            limits: Vec::new(),
             ..self.chart("Lagrange multipliers λᵢ of all robots", "λᵢ")
         };
         [
@@ -256,6 +263,7 @@ impl Album {
             axis,
             period_axis: format!("control period k (of {} s each)", quantity(period)),
             curves: Vec::new(),
+            alike: None,
             limits: Vec::new(),
             signs: &self.signs,
             lanes: &self.lanes,
@@ -301,23 +309,31 @@ fn limit_name(tolerance: f64) -> String {
 }
 
 fn bold_curve(label: &str, colour: &'static str, points: Vec<[f64; 2]>) -> Curve {
-    Curve { label: label.to_owned(), colour, dashed: false, width: 1.6, opacity: 1.0, points }
+    Curve { label: label.to_owned(), colour, width: 1.6, points }
 }
 
-/// One curve per robot; in crowds they are faint and without names.
-fn robot_curves(series: &Series) -> Vec<Curve> {
-    let robots = series.curves();
-    let distinct = robots <= DISTINCT_CURVES;
-    (0..robots)
-        .map(|robot| Curve {
-            label: if distinct { format!("robot {robot}") } else { String::new() },
-            colour: palette::CURVES[robot % palette::CURVES.len()],
-            dashed: distinct && robot >= palette::CURVES.len(),
-            width: if distinct { 1.2 } else { 0.8 },
-            opacity: if distinct { 0.9 } else { 0.45 },
-            points: series.points(robot),
-        })
-        .collect()
+/// A curve for each robot that departs from the others, at most [`MOST_CURVES`], and the range of the others.
+fn robot_curves(series: &Series) -> (Vec<Curve>, Option<Alike>) {
+    let departures = series.departures();
+    let farthest = departures.iter().copied().fold(0.0, f64::max);
+    let mut robots: Vec<usize> = (0..departures.len()).collect();
+    robots.sort_by(|&one, &other| departures[other].total_cmp(&departures[one]));
+    let departs = |&&robot: &&usize| departures[robot] > ALIKE * farthest;
+    let apart = match robots.len() {
+        few @ ..=MOST_CURVES => few,
+        _ => robots.iter().take(MOST_CURVES).take_while(departs).count(),
+    };
+    let (apart, alike) = robots.split_at_mut(apart);
+    apart.sort_unstable();
+    let curve = |(&robot, colour): (&usize, &&'static str)| Curve {
+        label: format!("robot {robot}"),
+        colour,
+        width: 1.2,
+        points: series.points(robot),
+    };
+    let ranges = (!alike.is_empty())
+        .then(|| Alike { label: format!("{} others", alike.len()), ranges: series.range(alike) });
+    (apart.iter().zip(&palette::CURVES).map(curve).collect(), ranges)
 }
 
 impl Watcher for Album {
@@ -330,5 +346,38 @@ impl Watcher for Album {
 
     fn end(&mut self, end: &End) -> io::Result<()> {
         self.page.end(end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twenty robots of which two depart, one of them in a single period.
+    #[test]
+    fn robots_that_are_alike_share_a_band() {
+        let mut series = Series::new(20);
+        for step in 0..10 {
+            let value = |robot: usize| match robot {
+                3 => 2.0,
+                7 if step == 4 => 3.0,
+                _ => 0.01 * robot as f64,
+            };
+            series.push(step, (0..20).map(value));
+        }
+        let (curves, alike) = robot_curves(&series);
+        let labels: Vec<&str> = curves.iter().map(|curve| curve.label.as_str()).collect();
+        assert_eq!(labels, ["robot 3", "robot 7"]);
+        let alike = alike.unwrap();
+        assert_eq!(alike.label, "18 others");
+        assert!(alike.ranges.iter().all(|range| range[1..] == [0.0, 0.19]), "{:?}", alike.ranges);
+    }
+
+    #[test]
+    fn a_few_robots_have_a_curve_each() {
+        let mut series = Series::new(MOST_CURVES);
+        series.push(0, (0..MOST_CURVES).map(|_| 1.0));
+        let (curves, alike) = robot_curves(&series);
+        assert!(curves.len() == MOST_CURVES && alike.is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! Curves over control periods: axes, the lines of telling moments, and the curves themselves.
 
-use pleach_drawing::svg::node::element::Group;
-use pleach_drawing::{Axis, layer, named, polyline};
+use pleach_drawing::svg::node::element::{Group, Polygon};
+use pleach_drawing::{Axis, corners, layer, named, polyline};
 
 use super::canvas::{Spot, headed, rectangle, stroke, text, text_width};
 use super::lanes::Lanes;
@@ -23,9 +23,6 @@ const MARK_ROW: f64 = 15.0;
 const LANE_NAME: f64 = 14.0;
 /// Smallest distance of labels at the right end of curves.
 const LABEL_STEP: f64 = 11.0;
-/// Curves up to which each has a colour and a label of its own.
-pub(super) const DISTINCT_CURVES: usize = 24;
-
 /// Something that happened at a control period, for the lines across the curves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sign {
@@ -40,10 +37,15 @@ pub(super) struct Sign {
 pub(super) struct Curve {
     pub label: String,
     pub colour: &'static str,
-    pub dashed: bool,
     pub width: f64,
-    pub opacity: f64,
     pub points: Vec<[f64; 2]>,
+}
+
+/// The range of curves that are alike: control period, smallest value and largest.
+#[derive(Clone, Debug)]
+pub(super) struct Alike {
+    pub label: String,
+    pub ranges: Vec<[f64; 3]>,
 }
 
 /// A value that curves may not cross.
@@ -61,6 +63,7 @@ pub(super) struct Chart<'a> {
     pub axis: &'a str,
     pub period_axis: String,
     pub curves: Vec<Curve>,
+    pub alike: Option<Alike>,
     pub limits: Vec<Limit>,
     pub signs: &'a [Sign],
     /// When each task is pursued.
@@ -79,6 +82,7 @@ impl Chart<'_> {
             .add(frame.grid(self.axis, &self.period_axis))
             .add(self.sign_lines(&frame))
             .add(self.limit_lines(&frame))
+            .add(self.range(&frame))
             .add(self.lines(&frame))
             .add(self.end_labels(&frame))
             .add(sign_legend())
@@ -145,15 +149,28 @@ impl Chart<'_> {
         })
     }
 
+    fn range(&self, frame: &Frame) -> Group {
+        let Some(Alike { ranges, .. }) = &self.alike else { return layer("alike") };
+        let lows = ranges.iter().map(|[k, low, _]| [frame.x(*k), frame.y(*low)]);
+        let highs = ranges.iter().rev().map(|[k, _, high]| [frame.x(*k), frame.y(*high)]);
+        let area = Polygon::new()
+            .set("points", corners(lows.chain(highs)))
+            .set("fill", palette::QUIET)
+            .set("fill-opacity", "0.3")
+            .set("stroke", palette::QUIET)
+            .set("stroke-width", "1.2")
+            .set("stroke-linejoin", "round");
+        layer("alike").add(area)
+    }
+
     fn lines(&self, frame: &Frame) -> Group {
         self.curves.iter().fold(layer("curves"), |group, curve| {
             let spots = curve.points.iter().map(|[k, value]| [frame.x(*k), frame.y(*value)]);
             let line = polyline(spots)
                 .set("stroke", curve.colour)
                 .set("stroke-width", curve.width)
-                .set("stroke-opacity", curve.opacity)
                 .set("stroke-linejoin", "round");
-            group.add(if curve.dashed { line.set("stroke-dasharray", "5 2.5") } else { line })
+            group.add(line)
         })
     }
 
@@ -163,12 +180,15 @@ impl Chart<'_> {
             .limits
             .iter()
             .map(|limit| (frame.y(limit.value), limit.label.as_str(), palette::LIMIT));
-        let curves = self.curves.iter().filter(|curve| !curve.label.is_empty());
-        let curves = curves.filter_map(|curve| {
+        let curves = self.curves.iter().filter_map(|curve| {
             let [_, value] = curve.points.last()?;
             Some((frame.y(*value), curve.label.as_str(), curve.colour))
         });
-        let mut labels: Vec<_> = limits.chain(curves).collect();
+        let alike = self.alike.iter().filter_map(|alike| {
+            let [_, low, high] = alike.ranges.last()?;
+            Some((frame.y((low + high) / 2.0), alike.label.as_str(), palette::QUIET))
+        });
+        let mut labels: Vec<_> = limits.chain(curves).chain(alike).collect();
         labels.sort_by(|one, other| one.0.total_cmp(&other.0));
         let heights: Vec<f64> = labels.iter().map(|label| label.0).collect();
         let places = spread(&heights, LABEL_STEP, CORNER[1] + SIZE[1] + 4.0);
@@ -223,6 +243,10 @@ struct Frame {
 impl Frame {
     fn around(chart: &Chart<'_>) -> Frame {
         let curves = chart.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p[1]));
+        let alike = chart
+            .alike
+            .iter()
+            .flat_map(|it| it.ranges.iter().flat_map(|range| [range[1], range[2]]));
         let limits = chart.limits.iter().map(|limit| limit.value);
         let [left, top] = CORNER;
         let [right, foot] = [left + SIZE[0], top + SIZE[1]];
@@ -230,7 +254,7 @@ impl Frame {
         Frame {
             last_step,
             steps: Axis::exact([0.0, last_step], left, right),
-            values: Axis::from_zero(curves.chain(limits), foot, top),
+            values: Axis::from_zero(curves.chain(alike).chain(limits), foot, top),
         }
     }
 

@@ -70,6 +70,30 @@ impl Series {
         self.extremes.first().map_or(0, Vec::len)
     }
 
+    /// By curve: how far it is from the median of all curves, at most.
+    pub(super) fn departures(&self) -> Vec<f64> {
+        let mut departures = vec![0.0; self.curves()];
+        for bucket in &self.extremes {
+            let lows = median(bucket.iter().map(|(low, _)| *low));
+            let highs = median(bucket.iter().map(|(_, high)| *high));
+            for (departure, (low, high)) in departures.iter_mut().zip(bucket) {
+                *departure = f64::max(*departure, (low - lows).abs().max((high - highs).abs()));
+            }
+        }
+        departures
+    }
+
+    /// The range of some curves: from where on, the smallest value and the largest.
+    pub(super) fn range(&self, curves: &[usize]) -> Vec<[f64; 3]> {
+        let range = |(start, bucket): (&usize, &Vec<(f64, f64)>)| {
+            let values = || curves.iter().filter_map(|&curve| bucket.get(curve));
+            let low = values().map(|(low, _)| *low).fold(f64::INFINITY, f64::min);
+            let high = values().map(|(_, high)| *high).fold(f64::NEG_INFINITY, f64::max);
+            (low.is_finite() && high.is_finite()).then_some([*start as f64, low, high])
+        };
+        self.starts.iter().zip(&self.extremes).filter_map(range).collect()
+    }
+
     /// The points of one curve: one a bucket, or two where the bucket spans several values.
     pub(super) fn points(&self, curve: usize) -> Vec<[f64; 2]> {
         let mut points = Vec::new();
@@ -86,10 +110,28 @@ impl Series {
     }
 }
 
+/// The value in the middle, or the larger one of two.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_curve_departs_as_far_as_its_farthest_value_is_from_the_median() {
+        let mut series = Series::new(3);
+        for (step, values) in [[1.0, 2.0, 1.0], [1.0, 1.5, 9.0], [1.0, 0.5, 1.0]].iter().enumerate()
+        {
+            series.push(step, values.iter().copied());
+        }
+        assert_eq!(series.departures(), [0.5, 1.0, 7.5]);
+        assert_eq!(series.range(&[0, 1]), [[0.0, 1.0, 2.0], [1.0, 1.0, 1.5], [2.0, 0.5, 1.0]]);
+    }
 
     proptest! {
         #![proptest_config(cases::usually(32))]
