@@ -3,6 +3,7 @@
 //!
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it documents` writes the generated documents anew.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{fs, io};
@@ -15,6 +16,8 @@ use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Crash, NodeFaults};
 use pleach::automaton::node::MessageFaults;
 use pleach::automaton::{Automaton, diagram};
+use pleach::discrete::network::Role;
+use pleach::discrete::network::activity::rows_between;
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
 use pleach::guards::Valuation;
@@ -95,6 +98,30 @@ fn the_drawings_of_the_automata_are_up_to_date() {
     for_each_automaton!(Automata::new().unwrap(), draw);
 }
 
+/// The duty from further away: how many rows lead from each role of the paper to each other one.
+#[test]
+fn the_drawing_of_the_roles_is_up_to_date() {
+    let count = |from: usize, to: usize| rows_between(Role::ALL[from], Role::ALL[to]).count();
+    let picture = diagram::overview_svg(&Role::ALL.map(Role::name), count);
+    assert!(picture.matches("class=\"arrow\"").count() <= 25);
+    keep_up_to_date("docs/pictures/roles.svg", &picture);
+}
+
+/// The events by which a robot changes from one role to another, a line a pair of roles. Exchanges are told apart from
+/// other events in the text above the table.
+fn table_of_roles() -> String {
+    let mut table = "| from | to | on |\n| --- | --- | --- |\n".to_owned();
+    for (from, to) in Role::ALL.into_iter().flat_map(|from| Role::ALL.map(|to| (from, to))) {
+        let events: BTreeSet<_> = rows_between(from, to).map(|row| row.event).collect();
+        let events: Vec<&str> = events.into_iter().map(Event::name).collect();
+        if from != to && !events.is_empty() {
+            let line = format!("| {} | {} | {} |\n", from.name(), to.name(), events.join(", "));
+            table.push_str(&line);
+        }
+    }
+    table
+}
+
 #[test]
 fn the_page_on_the_automata_is_up_to_date() {
     let chapters = for_each_automaton!(Automata::new().unwrap(), chapter).join("\n");
@@ -129,6 +156,13 @@ The duty is what a robot does for the network. Each location owns its data, and 
 the data of the next. The role of the paper follows from the duty: a robot on standby is *redundant*; a relay, a
 follower and a robot that shifts along Σ are *nodes*, the first of Σ the *recruit*; junctions, leaves and leaders keep
 their names.
+
+[![The roles of a robot](pictures/roles.svg)](pictures/roles.svg)
+
+An arrow stands for all rows of the table on which a robot may change from one role to another; its number says how many
+these are. A robot that waits on Σ keeps its role or is the recruit, so some rows count for several arrows. Rows that
+keep the role are left out. The table below names the events; those that begin with *takes* are exchanges of duties. The
+[drawing of all rows](pictures/duty.svg) has every location, guard and reset.
 ";
 
 const EXCHANGE: &str = "\
@@ -183,7 +217,11 @@ fn chapter<L: Location, E: Event, S: Valuation>(
     _: &Automaton<L, E, S>,
 ) -> String {
     let picture = format!("pictures/{name}.svg");
-    format!("## {title}\n\n{text}\n[![The {name} automaton]({picture})]({picture})\n")
+    let drawn = match name {
+        "duty" => table_of_roles(),
+        _ => format!("[![The {name} automaton]({picture})]({picture})\n"),
+    };
+    format!("## {title}\n\n{text}\n{drawn}")
 }
 
 // ---- The run in the README ---------------------------------------------------------------------

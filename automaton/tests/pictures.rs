@@ -44,6 +44,22 @@ fn runs() -> [Trajectory; 4] {
         .map(|run| run.expect("it can be run"))
 }
 
+/// Arrows between all pairs of six boxes: each has its number, and no number lies on another or on a box.
+#[test]
+fn numbers_in_an_overview_stand_apart() {
+    let names = ["idle", "called", "busy", "blocked", "done", "failed"];
+    let picture = diagram::overview_svg(&names, |from, to| 10 * from + to);
+    assert_well_formed(&picture);
+    let texts = texts(&picture);
+    let numbers = texts.iter().filter(|(words, ..)| words.parse::<usize>().is_ok());
+    assert_eq!(numbers.count(), 30);
+    for (index, (words, [x, y], _)) in texts.iter().enumerate() {
+        for (others, [u, v], _) in &texts[..index] {
+            assert!((x - u).abs() > 16.0 || (y - v).abs() > 13.0, "{words} lies on {others}");
+        }
+    }
+}
+
 #[test]
 fn all_pictures_are_well_formed() {
     assert_well_formed(&diagram::svg(&ball()));

@@ -9,6 +9,7 @@
 //! | [`table`] | the location × event table, with the guards, resets, flows and invariants | Markdown pages |
 //! | [`latex`] | the formal definition H = (Q, X, Init, f, Inv, E, G, R) | papers |
 //! | [`composition_mermaid`], [`composition_svg`] | the components side by side and what joins them | compositions |
+//! | [`overview_svg`] | boxes that stand for several locations, and how many transitions lead between them | large models |
 //! | [`coverage_svg`] | the picture, with what runs have left out in red | [coverage](crate::coverage) |
 //! | [`plot`] | variables and locations over time | [trajectories](crate::trajectory) |
 //! | [`phase_portrait`] | one variable over another | trajectories |
@@ -68,5 +69,5 @@ pub use dot::dot;
 pub use latex::latex;
 pub use mermaid::{composition_mermaid, mermaid};
 pub use plot::{FlowpipePicture, Patch, UnknownVariable, outcome, phase_portrait, plot};
-pub use svg::{composition_svg, coverage_svg, svg};
+pub use svg::{composition_svg, coverage_svg, overview_svg, svg};
 pub use table::table;

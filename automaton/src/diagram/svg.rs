@@ -5,6 +5,7 @@ mod arcs;
 mod canvas;
 mod columns;
 mod composition;
+mod overview;
 
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::Valuation;
@@ -15,6 +16,7 @@ use crate::coverage::ComponentCoverage;
 use canvas::{Canvas, Size};
 
 pub use composition::composition_svg;
+pub use overview::overview_svg;
 
 /// The automaton as an SVG document. Transitions that only may be taken are dashed, and those that
 /// happen at once are bold.

@@ -196,6 +196,14 @@ pub const fn may_follow(from: Role, to: Role) -> bool {
     FOLLOWERS[from as usize] & 1 << to as usize != 0
 }
 
+/// The rows of [`DUTIES`] on which a robot may change from one role to another.
+pub fn rows_between(
+    from: Role,
+    to: Role,
+) -> impl Iterator<Item = &'static Row<Activity, DutyEvent>> {
+    DUTIES.rows().iter().filter(move |row| leads_on(row, from, to))
+}
+
 /// The roles that may follow each role, as bits: the compiler reads the table.
 const FOLLOWERS: [u8; Role::ALL.len()] = {
     let mut followers = [0; Role::ALL.len()];

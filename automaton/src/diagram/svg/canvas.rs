@@ -152,6 +152,11 @@ impl Canvas {
         self.add(line.set("class", "column"));
     }
 
+    /// The ground of a text that stands on an arrow.
+    pub fn ground(&mut self, at: Pixel, radius: f64) {
+        self.add(disc([at.x, at.y], radius).set("fill", style::PAPER));
+    }
+
     /// Where a transition begins.
     pub fn dot(&mut self, at: Pixel) {
         self.dot_of(at, "dot");
