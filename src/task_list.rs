@@ -79,6 +79,12 @@ pub fn parse(text: &str, path: &Path) -> Result<Vec<ListedTask>, TaskListError> 
     let mut tasks = Vec::new();
     match columns {
         Err(what) => mistake(rows.first().map_or(1, |header| line_of(header, text)), &what),
+        Ok(_) if rows.len() == 1 => {
+            mistake(
+                line_of(&rows[0], text),
+                &"no row follows the names of the columns: add a row for each task",
+            );
+        }
         Ok(columns) => {
             for row in &rows[1..] {
                 let line = line_of(row, text);
@@ -231,7 +237,6 @@ mod tests {
             ..Task::at([0.5, 2.0])
         };
         assert_eq!(read(text), [(first, 2), (second, 5)]);
-        assert_eq!(read("x,y\n"), []);
         assert_eq!(read("x,y\n1,2"), [(Task::at([1.0, 2.0]), 2)]);
     }
 
@@ -254,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn a_first_row_that_names_no_table_of_tasks_is_refused() {
+    fn a_file_that_is_no_table_of_tasks_is_refused() {
         for (text, problem) in [
             ("", "tasks.csv:1: no row names the columns; the first row names x and y"),
             ("\n0.5,0.5\n", "tasks.csv:2: column \"0.5\" is unknown"),
@@ -263,6 +268,7 @@ mod tests {
                 "tasks.csv:1: column \"x;y\" is unknown; the first row names x and y, and any of announced",
             ),
             ("x,lasts\n", "tasks.csv:1: column y is missing"),
+            ("\nx,y\n,\n", "tasks.csv:2: no row follows the names of the columns"),
             ("x,y,x\n", "tasks.csv:1: column x stands twice"),
         ] {
             assert!(said(text).contains(problem), "{text:?}: {}", said(text));
