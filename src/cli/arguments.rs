@@ -201,8 +201,8 @@ pub struct ImportArguments {
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Write a page instead, on which the floor is seen over the map, and places are set by clicking: it prints the
-    /// command that makes the scenario
-    #[arg(long, value_name = "FILE.html", conflicts_with = "output")]
+    /// command that makes the scenario, with the other options of this one
+    #[arg(long, value_name = "FILE.html")]
     pub look: Option<PathBuf>,
     /// The name of the scenario [default: that of the map]
     #[arg(long)]

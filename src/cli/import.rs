@@ -129,8 +129,10 @@ mod tests {
             "a.html",
             "--name",
             "x",
+            "--output",
+            "x.toml",
         ];
         let command = command(call.into_iter().map(String::from));
-        assert_eq!(command, "pleach import 'my map.svg' --scale=0.1 --name x");
+        assert_eq!(command, "pleach import 'my map.svg' --scale=0.1 --name x --output x.toml");
     }
 }
