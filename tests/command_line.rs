@@ -110,6 +110,11 @@ fn a_task_out_of_reach_ends_with_status_3_and_the_same_trace_every_time() {
 
     let summary = String::from_utf8(output.stdout).unwrap();
     assert!(summary.starts_with("unreachable: 1 of 2 tasks serviced"), "{summary}");
+    assert_eq!(
+        summary.matches("no robot can come").count(),
+        1,
+        "the reason stands once: {summary}"
+    );
     let story = String::from_utf8(output.stderr).unwrap();
     assert!(story.contains("task 0 is serviced by robot"), "{story}");
     let trace = std::fs::read(&first).unwrap();
@@ -468,6 +473,23 @@ fn a_check_names_tasks_that_no_robot_can_service() {
     assert!(said(&output.stdout).contains("beyond the boundary or in a hole"));
     let output = pleach(&["check", "tests/scenarios/faulty/robot-in-hole.toml", "--no-figures"]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+/// The task lies in a pillar. A robot may stand beside it, which is no reason for another status.
+#[test]
+fn a_check_says_from_where_a_task_in_a_wall_is_serviced() {
+    let check = |place: &str| {
+        let task = format!("task[0].position={place}");
+        let radius = "control.service_radius=0.07";
+        let scenario = "tests/scenarios/pillar.toml";
+        pleach(&["check", scenario, "--no-figures", "--set", &task, "--set", radius])
+    };
+    let output = check("[0.55, 0.15]");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let report = said(&output.stdout);
+    let place = "robots service it from (0.610001, 0.150000), 0.060001 away, through the wall";
+    assert!(report.contains(place), "{report}");
+    assert!(!said(&check("[0.62, 0.15]").stdout).contains("through the wall\n"));
 }
 
 #[test]

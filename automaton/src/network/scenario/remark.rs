@@ -22,6 +22,15 @@ pub enum Remark {
         /// Why not.
         remark: TaskRemark,
     },
+    /// A task lies beyond the boundary or in a hole, within δ of a place where robots may stand.
+    InWall {
+        /// Which task, counted from 0.
+        task: usize,
+        /// Where a robot stands that services it.
+        place: [f64; 2],
+        /// How far that is from the task.
+        gap: f64,
+    },
     /// Polygons of the workspace touch, or hold what encloses nothing: they are taken as they are meant.
     Outline(Repair),
     /// Robots start so far apart that links are from the beginning as long as they otherwise get only when
@@ -104,7 +113,9 @@ impl Remark {
     /// The key of the scenario that it concerns.
     pub fn key(&self) -> KeyPath {
         match self {
-            Remark::Task { task, .. } => KeyPath::root().key("task").index(*task).key("position"),
+            Remark::Task { task, .. } | Remark::InWall { task, .. } => {
+                KeyPath::root().key("task").index(*task).key("position")
+            }
             Remark::Outline(repair) => key_of_repair(repair),
             Remark::LongLinks { .. } | Remark::ThroughWalls { .. } => KeyPath::root().key("link"),
             Remark::TooLate { task, what, .. } => {
@@ -143,6 +154,11 @@ impl fmt::Display for Remark {
                 "no robot can service it: no way leads to it from where the robots start; \
                  passages narrower than 2 clearances are closed to them, where position_error and \
                  motion_error add to the clearance"
+            ),
+            Remark::InWall { place: [x, y], gap, .. } => write!(
+                formatter,
+                "it lies beyond the boundary or in a hole: robots service it from ({x:.6}, {y:.6}), {gap:.6} away, \
+                 through the wall"
             ),
             Remark::Outline(repair) => write!(formatter, "{repair}"),
             Remark::LongLinks { usual, longest } => write!(
@@ -196,6 +212,9 @@ impl Fleet {
         let in_whole = |remark| match remark {
             Remark::Task { task, remark } => {
                 Some(Remark::Task { task: self.outward().task(task)?, remark })
+            }
+            Remark::InWall { task, place, gap } => {
+                Some(Remark::InWall { task: self.outward().task(task)?, place, gap })
             }
             other => Some(other),
         };
@@ -253,18 +272,13 @@ impl ValidScenario {
             .collect()
     }
 
-    /// Tasks that no robot can service, or none of the team that is to.
+    /// Tasks that no robot can service, or none of the team that is to, and those in walls.
     fn task_remarks(&self) -> Vec<Remark> {
         if !self.fleets().is_empty() {
             return self.fleets().iter().flat_map(Fleet::task_remarks).collect();
         }
         let tasks = self.task.iter().enumerate();
-        tasks
-            .filter_map(|(task, place)| {
-                let remark = self.task_remark(place.position.into())?;
-                Some(Remark::Task { task, remark })
-            })
-            .collect()
+        tasks.filter_map(|(task, stated)| self.task_remark(task, stated.position.into())).collect()
     }
 
     /// What the user would ask for, or take back, when the mission has ended.
@@ -280,21 +294,26 @@ impl ValidScenario {
         })
     }
 
-    /// Why no robot can service a task at this place, if none can; robots decide alike.
-    fn task_remark(&self, task: Point) -> Option<TaskRemark> {
+    /// Why no robot can service a task at this place, if none can, or from where one does, if the task lies in a wall;
+    /// robots decide alike.
+    fn task_remark(&self, task: usize, at: Point) -> Option<Remark> {
         let site = self.site();
-        let service_radius = site.settings.service_radius;
-        let gap_at = |place: Point| (place - task).norm();
-        let gap = gap_at(site.free_space.nearest(task));
-        if gap > site.settings.leash_radius() {
-            let is_inside = site.workspace.contains(task);
-            return Some(TaskRemark::TooDeep { is_inside, gap, service_radius });
+        let (service_radius, leash) = (site.settings.service_radius, site.settings.leash_radius());
+        let (is_inside, gap_at) = (site.workspace.contains(at), |place: Point| (place - at).norm());
+        let gap = gap_at(site.free_space.nearest(at));
+        if gap > leash {
+            let remark = TaskRemark::TooDeep { is_inside, gap, service_radius };
+            return Some(Remark::Task { task, remark });
         }
-        let is_reached = self.robot.iter().any(|robot| {
-            let place = site.free_space.nearest_reached(task, robot.position.into());
-            place.is_some_and(|place| gap_at(place) <= site.settings.leash_radius())
-        });
-        (!is_reached).then_some(TaskRemark::Elsewhere)
+        let mut reached = self
+            .robot
+            .iter()
+            .filter_map(|robot| site.free_space.nearest_reached(at, robot.position.into()));
+        match reached.find(|&place| gap_at(place) <= leash) {
+            None => Some(Remark::Task { task, remark: TaskRemark::Elsewhere }),
+            Some(_) if is_inside => None,
+            Some(place) => Some(Remark::InWall { task, place: place.into(), gap: gap_at(place) }),
+        }
     }
 
     /// The links with R > 0 at the start but for those between access points.
