@@ -1,7 +1,7 @@
 //! What a person needs in order to judge a mission that has ended.
 
 use crate::automaton::network::phrase;
-use crate::automaton::network::record::{MissionEvent, Outcome, Snapshot};
+use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::{LinkCount, Settings, ValidScenario};
 use crate::automaton::network::{KernelTimes, Site};
 use crate::figures::quantity;
@@ -77,10 +77,11 @@ impl TaskSummary {
         })
     }
 
-    /// What became of it if it was not serviced.
-    pub(crate) fn unserviced(&self) -> String {
+    /// Its state if it was not serviced; why it was given up, unless the end of the mission says so.
+    pub(crate) fn unserviced(&self, end: Option<&End>) -> String {
         let closing = self.closing().unwrap_or_else(|| "not serviced".to_owned());
-        match self.given_up() {
+        let is_told = |reason: &&str| end.is_some_and(|end| end.reason.contains(*reason));
+        match self.given_up().filter(|reason| !is_told(reason)) {
             Some(reason) => format!("{closing}: {reason}"),
             None => closing,
         }
@@ -303,6 +304,7 @@ impl Summary {
     }
 
     fn write_tasks(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let end = self.completed.as_ref().map(|(completed, _)| &completed.end);
         for (number, task) in self.tasks.iter().enumerate() {
             let [x, y] = task.position;
             let place = format!("({x}, {y})");
@@ -313,7 +315,7 @@ impl Summary {
                 Some(((step, _), robots)) => {
                     writeln!(formatter, "serviced at k = {step} {robots}")?;
                 }
-                None => writeln!(formatter, "{}", task.unserviced())?,
+                None => writeln!(formatter, "{}", task.unserviced(end))?,
             }
         }
         Ok(())

@@ -287,7 +287,7 @@ impl MissionPage {
                 let name = format!("task {number} at ({x}, {y})");
                 match task.serviced.zip(task.robots()) {
                     Some(((step, _), robots)) => Row::at(name, format!("serviced {robots}"), step),
-                    None => Row::new(name, task.unserviced()),
+                    None => Row::new(name, task.unserviced(self.end.as_ref())),
                 }
             })
             .collect();
