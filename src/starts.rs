@@ -43,14 +43,21 @@ pub struct NoStarts {
 pub fn draw(scenario: &ValidScenario, seed: u64) -> Result<ValidScenario, NoStarts> {
     let robots = scenario.robot.len();
     (0..DRAFTS)
-        .filter_map(|draft| places(scenario.site(), robots, &mut Dice::new(seed, draft)))
+        .filter_map(|draft| {
+            places(scenario.site(), robots, &mut Dice::new(seed, draft), |_, _| true)
+        })
         .find_map(|starts| scenario.with_starts(&starts).ok())
         .ok_or(NoStarts { robots })
 }
 
 /// Random places for this many robots, each connected to an access point, or none if they do not
-/// fit. Rates are not looked at.
-pub(crate) fn places(site: &Site, robots: usize, dice: &mut Dice) -> Option<Vec<[f64; 2]>> {
+/// fit. Rates are not looked at. A robot is placed within reach of another node if this link `suits`.
+pub(crate) fn places(
+    site: &Site,
+    robots: usize,
+    dice: &mut Dice,
+    suits: impl Fn(Point, Point) -> bool,
+) -> Option<Vec<[f64; 2]>> {
     let reach = REACH * site.usual.build;
     let apart = APART * site.settings.planning_clearance();
     let mut nodes = site.access_points.clone();
@@ -61,7 +68,8 @@ pub(crate) fn places(site: &Site, robots: usize, dice: &mut Dice) -> Option<Vec<
             let place = anchor + dice.in_disc()? * reach;
             let fits = site.free_space.contains(place)
                 && nodes[fixed..].iter().all(|other| (place - other).norm() >= apart)
-                && site.distance(anchor, place) <= reach;
+                && site.distance(anchor, place) <= reach
+                && suits(anchor, place);
             fits.then_some(place)
         })?;
         nodes.push(place);
@@ -69,9 +77,9 @@ pub(crate) fn places(site: &Site, robots: usize, dice: &mut Dice) -> Option<Vec<
     Some(nodes[fixed..].iter().map(|&place| place.into()).collect())
 }
 
-/// Places for this many robots as near to a place as they fit, by the length of the way; none if they do not fit.
+/// Places for this many robots as near to a place as they fit, by the length of the way; fewer if no more fit.
 #[cfg(feature = "cli")]
-pub(crate) fn around(site: &Site, place: Point, robots: usize) -> Option<Vec<[f64; 2]>> {
+pub(crate) fn around(site: &Site, place: Point, robots: usize) -> Vec<[f64; 2]> {
     let apart = APART * site.settings.planning_clearance();
     // Where half of the square around the place is free, it has room for all.
     let reach = (0..).map(|doubled| 1_i32 << doubled).take(RINGS);
@@ -90,8 +98,7 @@ pub(crate) fn around(site: &Site, place: Point, robots: usize) -> Option<Vec<[f6
         }
     }
     places.sort_by(|one, other| one.0.total_cmp(&other.0));
-    (places.len() >= robots)
-        .then(|| places[..robots].iter().map(|(_, spot)| (*spot).into()).collect())
+    places.into_iter().take(robots).map(|(_, spot)| spot.into()).collect()
 }
 
 /// How often the square doubles in which robots are placed: to 128 of them in a row.

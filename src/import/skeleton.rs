@@ -119,6 +119,19 @@ pub enum SkeletonError {
         /// A clearance with which they reach nearly all.
         fitting: Option<f64>,
     },
+    /// The robots do not fit on the floor.
+    #[error(
+        "{robots} robots of radius {clearance} do not fit on the floor that they can reach: with the distance that they \
+         keep, {fitting} do; give --robots {fitting} or fewer, or a smaller --robot-radius"
+    )]
+    TooMany {
+        /// How many there are.
+        robots: usize,
+        /// ρ.
+        clearance: f64,
+        /// How many fit, in rows.
+        fitting: usize,
+    },
     /// There is no room.
     #[error(
         "no place was found for {0}: the clearance may be too large for this floor, or the links \
@@ -129,6 +142,8 @@ pub enum SkeletonError {
 
 /// The most passages that are named with their places.
 const PASSAGES_NAMED: usize = 8;
+/// How many times more robots must fit in rows than are placed at random.
+const ROOM_FOR_RANDOM: usize = 2;
 /// Drafts of starts that are tried.
 const STARTS: u64 = 50;
 /// What all robots together generate by default: one robot in range of an access point carries it.
@@ -165,14 +180,13 @@ pub fn skeleton(
     let site = Site::new(&scenario)?;
     let mut notes: Vec<String> = site.repairs.iter().map(ToString::to_string).collect();
     notes.extend(narrow_passages(&site));
-    let starts = match (chosen.robots.is_empty(), chosen.near) {
-        (false, _) => Some(chosen.robots),
-        (true, Some(near)) => starts::around(&site, near.into(), choices.robots),
-        (true, None) => (0..STARTS)
-            .find_map(|draft| starts::places(&site, choices.robots, &mut Dice::new(1, draft))),
+    notes.extend(range_of_the_radio(choices, &scenario));
+    let starts = match chosen.robots.is_empty() {
+        false => chosen.robots,
+        true => starts(&site, chosen.near.map(Point::from), choices.robots, &mut notes)?,
     };
-    let starts = starts.ok_or(SkeletonError::NoRoom("the robots"))?;
     let rate = rounded_rate(RATES / starts.len().max(1) as f64);
+    notes.extend(rates(starts.len(), rate));
     scenario.robot = starts
         .into_iter()
         .map(|position| RobotStart::at(rounded(position, workspace.extent()), rate))
@@ -190,6 +204,72 @@ pub fn skeleton(
         notes.push(format!("robots cannot reach {} of the floor", percent(missed)));
     }
     Ok((ValidScenario::new(scenario)?, notes))
+}
+
+/// Where robots start: as near to a place as they fit, or else at random around the access points, if there is room
+/// for that without walls between a robot and the node that it is near.
+fn starts(
+    site: &Site,
+    near: Option<Point>,
+    robots: usize,
+    notes: &mut Vec<String>,
+) -> Result<Vec<[f64; 2]>, SkeletonError> {
+    let middle = near.unwrap_or_else(|| site.free_space.nearest(site.access_points[0]));
+    // Robots at random places leave gaps that are too small for others.
+    let mut rows = starts::around(site, middle, ROOM_FOR_RANDOM * robots);
+    if rows.len() < robots {
+        let clearance = site.settings.clearance;
+        return Err(match rows.len() {
+            0 => SkeletonError::NoRoom("the robots"),
+            fitting => SkeletonError::TooMany { robots, clearance, fitting },
+        });
+    }
+    if near.is_none() && rows.len() == ROOM_FOR_RANDOM * robots {
+        let is_open = |from, to| site.workspace.segment_clearance(from, to) > 0.0;
+        let drafts = || (0..STARTS).map(|draft| Dice::new(1, draft));
+        if let Some(places) =
+            drafts().find_map(|mut dice| starts::places(site, robots, &mut dice, is_open))
+        {
+            return Ok(places);
+        }
+    }
+    rows.truncate(robots);
+    if near.is_none() {
+        notes.push(
+            "robots start in rows around the first access point: at random places they do not fit"
+                .to_owned(),
+        );
+    }
+    Ok(rows)
+}
+
+/// What is to be said where one range is stated and the other one is the radio's.
+fn range_of_the_radio(choices: &Choices, scenario: &Scenario) -> Option<String> {
+    let [full, max] = choices.radio?.ranges();
+    let LinkRanges { full_range, max_range, .. } = scenario.link;
+    match (choices.full_range, choices.max_range) {
+        (Some(_), None) if max_range == max => Some(format!(
+            "max_range = {max} is the radio's, and full_range = {full_range} is not: --max-range changes it"
+        )),
+        (Some(_), None) => Some(format!(
+            "max_range = {max_range} follows from full_range = {full_range}, since the radio's {max} is not larger: \
+             --max-range changes it"
+        )),
+        (None, Some(_)) => Some(format!(
+            "full_range = {full} is the radio's, and max_range = {max_range} is not: --full-range changes it"
+        )),
+        _ => None,
+    }
+}
+
+/// What is to be said about the rates, which no map states.
+fn rates(robots: usize, rate: f64) -> Option<String> {
+    (robots > 0).then(|| {
+        format!(
+            "rate = {rate} for each robot, together at most {RATES} of what one robot can carry: the map states no \
+             rates, so set what yours send"
+        )
+    })
 }
 
 /// An error if robots with the default clearance miss more of the floor than may be lost.

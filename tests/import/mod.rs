@@ -9,7 +9,7 @@ use shapes::Dice;
 
 use pleach::automaton::network::record::Outcome;
 use pleach::continuous::Point;
-use pleach::import::{self, Choices, Plan, Reading, Spot};
+use pleach::import::{self, Choices, Plan, Radio, Reading, SkeletonError, Spot};
 use pleach::mission;
 use pleach::scenario_file;
 use std::path::Path;
@@ -387,6 +387,73 @@ fn as_many_tasks_are_placed_as_there_are_places() {
     assert!(notes.contains(&said), "{notes:?}");
 }
 
+/// From every robot a chain of links that no wall crosses leads to the access point.
+#[test]
+fn robots_start_in_sight_of_each_other() {
+    for (map, robots) in [("cellar.map", 8), ("rooms.map", 4), ("office.building.yaml", 6)] {
+        let plan = plan(map, &Reading::default());
+        let clearance = Some(0.1);
+        let choices =
+            Choices { robots, clearance, radio: Some(Radio::Wifi), ..Choices::named("sight") };
+        let (scenario, _) = import::skeleton(&plan, &choices).unwrap();
+        let (site, reach) = (scenario.site(), scenario.link.max_range);
+        let mut ahead: Vec<Point> =
+            scenario.robot.iter().map(|robot| robot.position.into()).collect();
+        let mut reached = site.access_points.clone();
+        while let Some(from) = reached.pop() {
+            let is_linked = |to: &mut Point| {
+                (*to - from).norm() < reach && site.workspace.segment_clearance(from, *to) > 0.0
+            };
+            reached.extend(ahead.extract_if(.., is_linked));
+        }
+        assert!(ahead.is_empty(), "{map}: {ahead:?} are behind walls");
+    }
+}
+
+/// The number that the error names does fit, and one more does not.
+#[test]
+fn robots_that_do_not_fit_are_counted() {
+    let plan = plan("cellar.map", &Reading::default());
+    let of = |robots: usize| {
+        let choices = Choices { robots, clearance: Some(1.0), ..Choices::named("cellar") };
+        import::skeleton(&plan, &choices)
+    };
+    let error = of(5000).unwrap_err();
+    let SkeletonError::TooMany { fitting, .. } = error else { panic!("{error}") };
+    let said = format!(
+        "5000 robots of radius 1 do not fit on the floor that they can reach: with the distance that they keep, {fitting} do"
+    );
+    assert!(error.to_string().starts_with(&said), "{error}");
+    assert!(of(fitting + 1).is_err());
+    let (scenario, notes) = of(fitting).unwrap();
+    assert_eq!(scenario.robot.len(), fitting);
+    assert!(notes.iter().any(|note| note.starts_with("robots start in rows")), "{notes:?}");
+}
+
+#[test]
+fn a_range_that_is_the_radio_s_is_told_and_so_are_rates() {
+    let plan = plan("cellar.map", &Reading::default());
+    let notes = |full_range, max_range| {
+        let radio = Some(Radio::Wifi);
+        let choices = Choices { radio, full_range, max_range, ..Choices::named("cellar") };
+        import::skeleton(&plan, &choices).unwrap().1
+    };
+    for (full_range, max_range, said) in [
+        (Some(3.0), None, "max_range = 35 is the radio's, and full_range = 3 is not"),
+        (Some(40.0), None, "max_range = 50 follows from full_range = 40, since the radio's 35 is"),
+        (None, Some(30.0), "full_range = 25 is the radio's, and max_range = 30 is not"),
+    ] {
+        let notes = notes(full_range, max_range);
+        assert!(notes.iter().any(|note| note.starts_with(said)), "{notes:?}");
+    }
+    for (full_range, max_range) in [(None, None), (Some(3.0), Some(4.0))] {
+        let notes = notes(full_range, max_range);
+        assert!(!notes.iter().any(|note| note.contains("range")), "{notes:?}");
+        let rate = "rate = 0.075 for each robot, together at most 0.6 of what one robot can carry";
+        assert!(notes.iter().any(|note| note.starts_with(rate)), "{notes:?}");
+    }
+}
+
 #[test]
 fn narrow_passages_and_closed_parts_are_told() {
     let plan = plan("cellar.map", &Reading::default());
@@ -396,7 +463,7 @@ fn narrow_passages_and_closed_parts_are_told() {
         Ok((_, notes)) => notes.join("\n"),
         Err(error) => error.to_string(),
     };
-    assert!(told.contains("the passage at") || told.contains("no place was found"), "{told}");
+    assert!(told.contains("the passage at") || told.contains("do not fit"), "{told}");
 }
 
 #[test]
