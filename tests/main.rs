@@ -25,7 +25,6 @@ mod outcomes;
 mod pages;
 mod proofs;
 mod proven;
-mod public_api;
 mod records;
 mod reference;
 mod routes;

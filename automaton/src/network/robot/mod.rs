@@ -6,7 +6,7 @@
 //! control period.
 //!
 //! A robot is made of components: each owns its state, in a module of its own, and sees of the others what it is given as
-//! arguments, with a read-only [`Context`](context::Context) of the step. The fields of [`Robot`] name them. The chapters are
+//! arguments, with a read-only `Context` of the step. The fields of [`Robot`] name them. The chapters are
 //! about what robots do with several of them, in the order of a control period: a robot receives beacons (`hearing`) and
 //! learns who does not take part (`absence`) and where robots of other fleets are (`bodies`), keeps its place
 //! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`leader`, `recruit`,
