@@ -232,7 +232,6 @@ impl Robot {
             exchanges,
             tree,
             ballot,
-            team,
             neighbours: _, // by their beacons and their silence
             // Constant.
             site: _,
@@ -241,12 +240,10 @@ impl Robot {
             changes: _,
             outbox: _,
             membership: _,
-            facts: _,
             // No robot is missed, and no task, where no time passes; and none restarts.
             // Routes and motion.
             routing: _,
             reservation: _,
-            navigation: _,
             negotiation: _,
         } = self;
         let [below, ..] = tree.reports();
@@ -276,7 +273,7 @@ impl Robot {
                     &**duty,
                     duty.posts_made(),
                     tree.unused_periods(),
-                    team.followed_post(),
+                    mission.team().followed_post(),
                     below,
                     mission.closed()
                 )
@@ -289,7 +286,7 @@ impl Robot {
                     ballot.bid(),
                     waited,
                     ballot.agreement(),
-                    team.report(),
+                    mission.team().report(),
                     mission.is_stretched(),
                     wait
                 )

@@ -41,11 +41,11 @@ macro_rules! facts {
             /// Quantities and propositions with what they say, in the order of their declaration.
             pub const GLOSSARY;
             quantities {
-                $($(#[doc = $measure])+ $quantity: $robot.facts.$quantity,)+
+                $($(#[doc = $measure])+ $quantity: $robot.changes.facts().$quantity,)+
                 $($(#[doc = $live_measure])+ $live_quantity: $number,)+
             }
             propositions {
-                $($(#[doc = $text])+ $name: $robot.facts.$name,)+
+                $($(#[doc = $text])+ $name: $robot.changes.facts().$name,)+
                 $($(#[doc = $live_text])+ $live: $holds,)+
             }
         }
@@ -298,8 +298,7 @@ impl Robot {
             return false;
         }
         let facts = self.facts_now();
-        let may_jump = self.changes.may_jump(facts != self.facts);
-        self.facts = facts;
+        let may_jump = self.changes.renew_facts(facts);
         let is_right = |robot: &Self| may_jump || robot.is_at_rest();
         debug_assert!(self.may_skip(is_right), "robot {} misses a transition", self.id);
         may_jump
@@ -426,7 +425,7 @@ impl Robot {
     }
 
     fn measure_team(&self, facts: &mut Facts) {
-        if let Some(team) = self.team.report() {
+        if let Some(team) = self.mission.team().report() {
             facts.still = f64::from(team.still);
             facts.slack = team.slack.is_some();
         }
@@ -436,7 +435,7 @@ impl Robot {
             // A robot that has joined from afar hears nothing of the team until it is there; if it
             // never arrives, no other robot notices. Nor does one where the leader has been cut off, and is
             // attached elsewhere by now.
-            facts.stalled = match self.team.report() {
+            facts.stalled = match self.mission.team().report() {
                 Some(_) if facts.slack || facts.pending => facts.still,
                 Some(_) => 0.0,
                 None => f64::from(self.body.still_periods()),

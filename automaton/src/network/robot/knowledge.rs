@@ -6,6 +6,7 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_discrete::network::{IdSet, NodeId, NoticeId};
 
+use super::primary_team::Team;
 use crate::located::Current;
 use crate::network::beacon::{Announced, Announcement, Beacon, Bulletin, Notice};
 use crate::network::mission::{Idle, Mission};
@@ -35,6 +36,8 @@ pub(super) struct Knowledge {
     longest_wait: usize,
     /// The tasks that are over, as far as the robot has received.
     closed: Arc<IdSet>,
+    /// What the primary team knows of itself.
+    team: Team,
 }
 
 impl Deref for Knowledge {
@@ -60,6 +63,7 @@ impl Default for Knowledge {
             is_stretched: false,
             longest_wait: 0,
             closed: Arc::default(),
+            team: Team::default(),
         }
     }
 }
@@ -178,6 +182,16 @@ impl Knowledge {
     /// News may be under way for so many rounds.
     pub const fn wait_for(&mut self, rounds: usize) {
         self.longest_wait = rounds;
+    }
+
+    /// What the primary team knows of itself.
+    pub const fn team(&self) -> &Team {
+        &self.team
+    }
+
+    /// The primary team is reviewed.
+    pub const fn team_mut(&mut self) -> &mut Team {
+        &mut self.team
     }
 
     /// The tasks that are over, as far as the robot has received.

@@ -47,6 +47,7 @@ mod outbox;
 mod partner;
 mod path;
 mod places;
+mod primary_team;
 mod recruit;
 mod reservation;
 mod revision;
@@ -104,7 +105,6 @@ use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use knowledge::Knowledge;
 use membership::Membership;
-use navigation::Navigation;
 use negotiation::Negotiation;
 use neighbours::Neighbours;
 use outbox::Outbox;
@@ -113,7 +113,6 @@ use reservation::{Plan, Reservation, lease_of};
 use revision::Changes;
 use routing::{Receiver, Routing, Survey};
 use schedule::Schedule;
-use team::Team;
 use tree_place::TreePlace;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
@@ -135,7 +134,7 @@ pub struct Robot {
     site: Arc<Site>,
     /// Where it is in its control period.
     schedule: Schedule,
-    /// What has changed since it last derived something.
+    /// What has changed since it last derived something, and what its guards saw last.
     changes: Changes,
     id: NodeId,
     /// What it sends of itself.
@@ -146,21 +145,15 @@ pub struct Robot {
     reservation: Reservation,
     /// What it does.
     duty: DutyCell,
-    /// What it knows of the mission.
+    /// What it knows of the mission and of the primary team.
     mission: Knowledge,
-    /// What its guards saw last.
-    facts: Facts,
     /// The exchange of duties that it is engaged in.
     exchanges: Exchanges,
     /// Its place in the tree.
     tree: TreePlace,
     /// The election and the agreement that it takes part in.
     ballot: Ballot,
-    /// What the primary team knows of itself.
-    team: Team,
-    /// Where it goes.
-    navigation: Navigation,
-    /// Which moves are proposed, and who consents.
+    /// Where it goes, which moves are proposed, and who consents.
     negotiation: Negotiation,
 }
 
@@ -181,12 +174,9 @@ impl Robot {
             reservation: Reservation::default(),
             duty: DutyCell::new(Duty::Standby(Standby(Held { station, left: None }))),
             mission: Knowledge::default(),
-            facts: Facts::default(),
             exchanges: Exchanges::default(),
             tree: TreePlace::alone(id),
             ballot: Ballot::default(),
-            team: Team::default(),
-            navigation: Navigation::default(),
             negotiation: Negotiation::default(),
             site,
         }
@@ -299,7 +289,7 @@ impl Robot {
             offer: self.offers().offer().cloned(),
             offers_made: self.offers().offers_made(),
             reply: self.offers().reply().cloned(),
-            team: self.team.report(),
+            team: self.mission.team().report(),
             stretched: self.mission.is_stretched(),
             longest_wait: self.longest_wait(),
             wrecks: Arc::clone(self.membership.wrecks()),

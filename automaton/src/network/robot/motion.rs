@@ -132,7 +132,7 @@ impl Robot {
     fn approach(&mut self, goal: Option<Point>) {
         self.negotiation.begin();
         let Some(goal) = goal else {
-            if self.navigation.stop() {
+            if self.negotiation.navigation_mut().stop() {
                 self.note_change();
             }
             return;
@@ -141,7 +141,7 @@ impl Robot {
             return;
         }
         let Some(waypoint) = self.first_waypoint(goal) else { return };
-        self.navigation.turn_to(waypoint);
+        self.negotiation.navigation_mut().turn_to(waypoint);
         let problem = self.motion_problem(waypoint);
         let segment = Segment { from: self.body.position(), to: self.solve(&problem).target };
         if segment.length() > LEAST_MOVE * self.site.settings.step_radius
@@ -158,7 +158,7 @@ impl Robot {
         if !self.site.settings.errors.are_none() && !problem.admits(&self.body.position()) {
             let motion = problem.solve_from_outside();
             let way = |from: Point| {
-                let goal = self.navigation.destination();
+                let goal = self.negotiation.navigation().destination();
                 goal.map_or(0.0, |goal| self.site.free_space.distance_to(from, goal))
             };
             return match way(motion.target) < way(self.body.position()) {
@@ -288,7 +288,7 @@ impl Robot {
     /// itself before: that is as near to its true place, and what it has told of itself remains true. One
     /// that wants to go on and cannot measures itself anew from time to time: with other errors it may.
     pub(super) fn correct_position(&mut self, position: Point) {
-        let tries_again = self.navigation.waypoint().is_some()
+        let tries_again = self.negotiation.navigation().waypoint().is_some()
             && (self.body.still_periods() + 1).is_multiple_of(PERSISTENCE);
         let has_moved = self.body.is_moving() || tries_again;
         let off = (position - self.body.position()).norm();

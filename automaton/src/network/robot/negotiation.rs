@@ -18,12 +18,15 @@ use pleach_continuous::network::motion::MotionProblem;
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::consent::all_consent;
 
+use super::navigation::Navigation;
 use crate::network::member::NodeOutputs;
 use crate::network::message::Message;
 
 /// The moves of a robot and of its neighbours in the negotiation of a control period.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Negotiation {
+    /// Where the robot goes.
+    navigation: Navigation,
     /// The move that the robot intends.
     proposal: Option<Segment>,
     /// Its proposal as it was sent last.
@@ -50,6 +53,16 @@ impl Negotiation {
         self.consents.clear();
         self.to_answer.clear();
         self.must_judge = true;
+    }
+
+    /// Where the robot goes.
+    pub const fn navigation(&self) -> &Navigation {
+        &self.navigation
+    }
+
+    /// The robot goes elsewhere.
+    pub const fn navigation_mut(&mut self) -> &mut Navigation {
+        &mut self.navigation
     }
 
     /// The robot intends this move, to a solution of a problem.

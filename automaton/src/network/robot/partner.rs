@@ -126,7 +126,7 @@ impl Robot {
     /// Whether this robot is anywhere behind the neighbour in the primary team.
     pub(super) fn is_behind_in_team(&self, neighbour: &Neighbour) -> bool {
         self.is_of_team(neighbour)
-            && is_behind(neighbour.beacon.team.as_ref(), self.team.report().as_ref())
+            && is_behind(neighbour.beacon.team.as_ref(), self.mission.team().report().as_ref())
     }
 
     /// Whether this robot and the neighbour are both of the primary team.
@@ -155,7 +155,9 @@ impl Robot {
         let mut children = self.children_of(station.post.id);
         let children_hold = children.all(keeps_link_to);
         let makes_room = match self.is_of_team(parked) {
-            true => stands_behind(self.team.report().as_ref(), parked.beacon.team.as_ref()),
+            true => {
+                stands_behind(self.mission.team().report().as_ref(), parked.beacon.team.as_ref())
+            }
             false => parked.beacon.parked,
         };
         makes_room
@@ -241,7 +243,7 @@ impl Robot {
         let stands_behind_mover = || {
             let mover = self.offer_to_answer().and_then(|(mover, _)| self.neighbour(mover));
             mover.is_some_and(|it| {
-                stands_behind(it.beacon.team.as_ref(), self.team.report().as_ref())
+                stands_behind(it.beacon.team.as_ref(), self.mission.team().report().as_ref())
             })
         };
         (self.is_parked() || stands_behind_mover())
@@ -283,7 +285,7 @@ impl Robot {
     fn knows_mission(&self) -> bool {
         let announced = self.mission.announcement_id();
         let is_current = announced.is_some_and(|id| id.epoch() == self.notice_id().epoch());
-        is_current && !self.facts.path_announced
+        is_current && !self.changes.facts().path_announced
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what

@@ -202,9 +202,13 @@ impl Robot {
     }
 
     fn standstill(&self) -> Option<Standstill> {
-        self.team.report().map(|TeamReport { remaining, saturated, near_other_tree, .. }| {
-            Standstill { remaining, saturated, near_other_tree }
-        })
+        self.mission.team().report().map(
+            |TeamReport { remaining, saturated, near_other_tree, .. }| Standstill {
+                remaining,
+                saturated,
+                near_other_tree,
+            },
+        )
     }
 
     /// How the mission ends without a recruit.

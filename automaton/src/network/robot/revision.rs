@@ -1,5 +1,7 @@
 //! Revisions: what a robot derives, it derives again when something that it is derived from has changed.
 
+use super::facts::Facts;
+
 /// A count of the changes of a robot's own state and of what it has received. What is derived is stored with the revision
 /// that it was derived at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +19,8 @@ pub(super) struct Changes {
     processed_at: Stamp,
     compared_at: Stamp,
     measured_at: Stamp,
+    /// What guards saw when they were evaluated last.
+    facts: Facts,
     /// Whether no transition can be taken before the facts change.
     is_quiet: bool,
 }
@@ -56,6 +60,7 @@ impl Default for Changes {
             processed_at: Stamp::default(),
             compared_at: Stamp::default(),
             measured_at: Stamp::default(),
+            facts: Facts::default(),
             is_quiet: false,
         }
     }
@@ -98,10 +103,16 @@ impl Changes {
         self.measured_at.renew(self.revision)
     }
 
-    /// Guards are evaluated with the facts; returns whether one may hold that did not hold before.
-    pub const fn may_jump(&mut self, has_new_facts: bool) -> bool {
+    /// Guards are evaluated with these facts; returns whether one may hold that did not hold before.
+    pub fn renew_facts(&mut self, facts: Facts) -> bool {
+        let has_changed = std::mem::replace(&mut self.facts, facts) != facts;
         let was_quiet = std::mem::replace(&mut self.is_quiet, true);
-        has_new_facts || !was_quiet
+        has_changed || !was_quiet
+    }
+
+    /// What guards saw when they were evaluated last.
+    pub const fn facts(&self) -> &Facts {
+        &self.facts
     }
 
     /// Whether no transition can be taken before the facts change.
@@ -125,6 +136,11 @@ impl Changes {
         self.process();
         self.compare();
         self.measure();
+    }
+
+    /// Guards see these facts.
+    pub const fn sees(&mut self, facts: Facts) {
+        self.facts = facts;
     }
 
     /// No transition can be taken before the facts change.
@@ -152,9 +168,12 @@ mod tests {
     #[test]
     fn guards_are_evaluated_again_with_new_facts_or_where_a_jump_is_allowed() {
         let mut changes = Changes::default();
-        assert!(changes.may_jump(false) && !changes.may_jump(false) && changes.may_jump(true));
+        let other = Facts { first: true, ..Facts::default() };
+        let mut may_jump = |facts| changes.renew_facts(facts);
+        assert!(may_jump(Facts::default()) && !may_jump(Facts::default()));
+        assert!(may_jump(other) && !may_jump(other));
         changes.allow_jump();
-        assert!(changes.may_jump(false));
+        assert!(changes.renew_facts(other) && *changes.facts() == other);
     }
 
     #[test]

@@ -41,7 +41,7 @@ impl Robot {
             && self.changes.is_quiet()
             && !self.duty.is_late()
             && !self.tree.awaits_confirmation()
-            && self.navigation.waypoint().is_none()
+            && self.negotiation.navigation().waypoint().is_none()
             && !self.body.is_moving()
             && self.tree.orphaned_periods() == 0
             && self.membership.is_complete()
@@ -50,7 +50,7 @@ impl Robot {
 
     /// Whether its facts are as it has measured them, and no guard holds.
     pub(super) fn facts_stand(&self) -> bool {
-        self.facts_now() == self.facts && self.is_at_rest()
+        self.facts_now() == *self.changes.facts() && self.is_at_rest()
     }
 
     /// Whether no transition of the mission or of its duty can be taken.
@@ -95,7 +95,7 @@ impl Robot {
             "report on the team": now.team, then.team;
             "links of the tree": now.stretched, then.stretched;
             "longest wait": now.longest_wait, then.longest_wait;
-            "team": self.team, before.team;
+            "team": self.mission.team(), before.mission.team();
             "mission": self.mission.current(), before.mission.current();
             "lineage": now.lineage, then.lineage;
             "parent": now.parent, then.parent;

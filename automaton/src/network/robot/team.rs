@@ -33,43 +33,6 @@ const SLACK: f64 = 0.95;
 /// A robot that sends for this share of its time is at the limit of what its links carry.
 pub const SATURATED: f64 = 0.95;
 
-/// What the primary team knows of itself, as far as it is known to a robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Team {
-    /// From the leader back to the robot, where the team is the active team and the robot one of it.
-    report: Option<TeamReport>,
-    /// The post of the robot, if another one of the primary team follows it.
-    followed_post: Option<PostId>,
-}
-
-impl Team {
-    /// What the team knows of itself, from the leader back to the robot.
-    pub const fn report(&self) -> Option<TeamReport> {
-        self.report
-    }
-}
-
-#[cfg(any(test, feature = "abstraction"))]
-impl Team {
-    /// The post of the robot, if another one follows it.
-    pub const fn followed_post(&self) -> Option<PostId> {
-        self.followed_post
-    }
-}
-
-#[cfg(test)]
-impl Team {
-    /// The team knows this of itself.
-    pub const fn is_told(&mut self, report: Option<TeamReport>) {
-        self.report = report;
-    }
-
-    /// Another robot follows the robot that holds this post.
-    pub const fn is_followed(&mut self, post: PostId) {
-        self.followed_post = Some(post);
-    }
-}
-
 /// The leader is within reach of its task, and services it.
 pub(super) fn announce_service(_: &Advance, robot: &Robot, effects: &mut Effects) -> Option<Idle> {
     let task = robot.current_task()?;
@@ -103,7 +66,7 @@ pub(super) fn wait<A>(_: &A, _: &Robot, effects: &mut Effects) -> Idle {
 /// The active team cannot go on, and a recruit would not help.
 pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> Ended {
     let (name, slack) =
-        (robot.site.name_of(robot.id), robot.team.report().and_then(|team| team.slack));
+        (robot.site.name_of(robot.id), robot.mission.team().report().and_then(|team| team.slack));
     let reason = match (robot.duty.place(), slack.map(|slack| robot.site.name_of(slack))) {
         (Some(_), _) => format!(
             "robot {name} cannot get to the place of Σ that it should take: its link does not reach there, or \
@@ -184,14 +147,16 @@ impl Robot {
     fn expects_follower(&self, own: PostId) -> bool {
         let has_joined = matches!(*self.notice(),
             Notice::Advance { joined: Some((_, followed)) } if followed == own);
-        has_joined || self.team.followed_post == Some(own)
+        has_joined || self.mission.team().followed_post() == Some(own)
     }
 
     /// Remembers that a robot follows it: one that falls silent follows all the same.
     pub(super) fn note_follower(&mut self) {
-        let follows =
-            |own: &PostId| self.hears_follower(*own) || self.team.followed_post == Some(*own);
-        self.team.followed_post = self.primary_post().filter(follows);
+        let follows = |own: &PostId| {
+            self.hears_follower(*own) || self.mission.team().followed_post() == Some(*own)
+        };
+        let followed = self.primary_post().filter(follows);
+        self.mission.team_mut().follow(followed);
     }
 
     /// The post of a newcomer that this robot should attach to but does not yet reach.
@@ -266,7 +231,7 @@ impl Robot {
 
     /// What the team knows of itself, from the leader back to this robot.
     pub(super) fn review_team(&mut self) {
-        self.team.report = None;
+        self.mission.team_mut().review(None);
         if self.phase() != Phase::Advance || !self.duty.is_primary() {
             return;
         }
@@ -274,7 +239,7 @@ impl Robot {
         let own_saturated = (self.is_saturated() && !self.is_at_limit()).then_some(self.id);
         let still = self.body.still_periods();
         let near_other_tree = self.is_eager() && self.is_near_other_tree();
-        self.team.report = match self.duty.post().map(|post| post.kind) {
+        let report = match self.duty.post().map(|post| post.kind) {
             Some(PostKind::Primary { follows: Some(ahead) }) => {
                 self.holder(ahead).and_then(|n| n.beacon.team).map(|front| TeamReport {
                     still: front.still.min(still),
@@ -294,6 +259,7 @@ impl Robot {
                 near_other_tree,
             }),
         };
+        self.mission.team_mut().review(report);
     }
 
     /// Whether recruits are called for ahead of a standstill, and the primary team goes on meanwhile.
@@ -310,7 +276,8 @@ impl Robot {
     /// and how many the team has: one for each member.
     pub(super) fn links_left(&self) -> Option<(f64, f64)> {
         let parent = self.neighbour_at(self.anchor()?)?;
-        let (target, members) = (self.mission.target()?, f64::from(self.team.report()?.members));
+        let (target, members) =
+            (self.mission.target()?, f64::from(self.mission.team().report()?.members));
         let (from, longest) = (parent.position(), self.longest_length());
         Some((self.site.links_between(from, target, longest, self.reach()), members))
     }
@@ -346,7 +313,7 @@ impl Robot {
     /// shortest way changes over to the other side of an obstacle.
     fn length_ahead(&self, node: &Neighbour) -> f64 {
         let now = self.walk_to(node);
-        let ahead = self.navigation.waypoint().map(|waypoint| {
+        let ahead = self.negotiation.navigation().waypoint().map(|waypoint| {
             let way = waypoint - self.body.position();
             let step = self.site.settings.step_radius.min(way.norm());
             let place = self.body.position() + way.try_normalize(0.0).unwrap_or_default() * step;

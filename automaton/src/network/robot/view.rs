@@ -76,7 +76,7 @@ impl<'a> RobotView<'a> {
 
     /// What its guards saw when they were evaluated last.
     pub const fn facts(self) -> &'a Facts {
-        &self.0.facts
+        self.0.changes.facts()
     }
 
     /// The newest notice on the mission that it knows.
@@ -189,7 +189,7 @@ impl<'a> RobotView<'a> {
 
     /// Whether it is of the primary team, and stands still like all others from the leader back to it.
     pub fn stands_in_team(self) -> bool {
-        self.0.team.report().is_some_and(|report| report.stands_still())
+        self.0.mission.team().report().is_some_and(|report| report.stands_still())
     }
 }
 

@@ -32,9 +32,9 @@ impl Robot {
     pub(super) fn first_waypoint(&mut self, goal: Point) -> Option<Point> {
         let site = Arc::clone(&self.site);
         let free_space: &FreeSpace = &site.free_space;
-        self.navigation.head_for(goal, free_space);
-        let direct =
-            free_space.geodesic_to(self.body.position(), self.navigation.destination()?)?;
+        self.negotiation.navigation_mut().head_for(goal, free_space);
+        let direct = free_space
+            .geodesic_to(self.body.position(), self.negotiation.navigation().destination()?)?;
         let keep_out = KEEP_OUT * self.clearance();
         let wrecks = self.keep_out_discs(keep_out);
         let bodies = self.discs_of_bodies(KEEP_OUT_OF_BODIES * self.clearance());
@@ -48,14 +48,20 @@ impl Robot {
             .collect();
         let path = self.way_around(self.body.position(), direct, &fixed, &parked);
         let way = self.way_of_link(&path, &parked);
-        self.navigation.follow_link(way.is_some());
+        self.negotiation.navigation_mut().follow_link(way.is_some());
         if let Some(way) = way {
             return Some(self.next_corner(&way).unwrap_or(goal));
         }
         let corner = self.next_corner(&path).unwrap_or(goal);
-        match self.navigation.waypoint().filter(|&kept| kept != corner && self.may_keep(kept)) {
+        match self
+            .negotiation
+            .navigation()
+            .waypoint()
+            .filter(|&kept| kept != corner && self.may_keep(kept))
+        {
             Some(kept) => {
-                let onward = free_space.geodesic_to(kept, self.navigation.destination()?)?;
+                let onward =
+                    free_space.geodesic_to(kept, self.negotiation.navigation().destination()?)?;
                 let length = (kept - self.body.position()).norm()
                     + self.way_around(kept, onward, &fixed, &parked).length;
                 let margin = HYSTERESIS * self.clearance();
@@ -75,7 +81,7 @@ impl Robot {
         parked: &[Disc],
     ) -> Geodesic {
         let space = &self.site.free_space;
-        let Some(goal) = self.navigation.destination().map(Destination::goal) else {
+        let Some(goal) = self.negotiation.navigation().destination().map(Destination::goal) else {
             return direct;
         };
         let direct = match fixed.is_empty() {
@@ -116,7 +122,7 @@ impl Robot {
         if left(back.length + path.length) == 0.0 {
             return None;
         }
-        let onward = space.geodesic_to(parent, self.navigation.destination()?)?;
+        let onward = space.geodesic_to(parent, self.negotiation.navigation().destination()?)?;
         // A robot that goes by the parent's side already does not turn round where it gains less by that.
         let is_kept = self.keeps_way_of_link();
         let hysteresis = if is_kept { 0.0 } else { HYSTERESIS };
@@ -152,7 +158,7 @@ impl Robot {
         }
         let (site, space) = (&self.site, &self.site.free_space);
         let passed = crossing.iter().skip(self.index_in_crossing(crossing)).take(2);
-        let goal = self.navigation.destination()?.goal();
+        let goal = self.negotiation.navigation().destination()?.goal();
         let mut from = self.body.position();
         let mut corners = Vec::new();
         for to in passed.map(|&access| site.access_points[access]).chain([goal]) {
@@ -164,7 +170,8 @@ impl Robot {
 
     /// Whether it follows a way that its link requires, and is making progress.
     fn keeps_way_of_link(&self) -> bool {
-        self.navigation.goes_by_link() && self.body.still_periods() < PATIENCE_WITH_WAYS
+        self.negotiation.navigation().goes_by_link()
+            && self.body.still_periods() < PATIENCE_WITH_WAYS
     }
 
     /// Whether its link to the robot that it follows, which `path` leads to, would exceed its limit on `way`. It is

@@ -32,7 +32,10 @@ impl Robot {
     /// cannot asks in turn.
     pub(super) fn way_asked_for(&self) -> Option<Point> {
         let is_on_its_way = !self.is_parked() || self.way_to_clear().is_some();
-        self.navigation.waypoint().filter(|_| is_on_its_way && self.body.still_periods() >= ASKING)
+        self.negotiation
+            .navigation()
+            .waypoint()
+            .filter(|_| is_on_its_way && self.body.still_periods() >= ASKING)
     }
 
     /// Whether a mover is so near that this robot should not settle now. One that is stuck may be

@@ -44,17 +44,17 @@ fn a_recruit_is_called_for_ahead_exactly_where_links_cannot_reach_the_task() {
 fn a_team_reaches_as_many_links_as_it_has_members() {
     let phase = |away: f64, members: u32, change: &dyn Fn(&mut Robot)| {
         let mut robot = leader(Strategy::Eager, away);
-        let report = robot.team.report().expect("it leads");
-        robot.team.is_told(Some(TeamReport { members, ..report }));
+        let report = robot.mission.team().report().expect("it leads");
+        robot.mission.team_mut().review(Some(TeamReport { members, ..report }));
         change(&mut robot);
         next_phase(&mut robot)
     };
     let reach = reach_alone() + robot().hard_length();
     assert_eq!(phase(reach - LITTLE, 2, &|_| ()), Phase::Advance);
     assert_eq!(phase(reach + LITTLE, 2, &|_| ()), Phase::RecruitElection);
-    let is_followed = |robot: &mut Robot| robot.team.is_followed(PostId(30));
+    let is_followed = |robot: &mut Robot| robot.mission.team_mut().follow(Some(PostId(30)));
     assert_eq!(phase(reach + LITTLE, 2, &is_followed), Phase::Advance, "it is not p₁");
-    let knows_no_team = |robot: &mut Robot| robot.team.is_told(None);
+    let knows_no_team = |robot: &mut Robot| robot.mission.team_mut().review(None);
     assert_eq!(phase(reach + LITTLE, 2, &knows_no_team), Phase::Advance);
 }
 

@@ -368,10 +368,10 @@ fn an_announcement_is_learnt_after_the_notices_by_it() {
     robot.hear_notices();
     assert!(robot.newer_announcement().is_some());
     robot.measures();
-    assert!(robot.facts.overtaken && !robot.facts.announcement_heard);
+    assert!(robot.changes.facts().overtaken && !robot.changes.facts().announcement_heard);
     robot.mission.is(Mission::Idle(Idle));
     robot.measures();
-    assert!(!robot.facts.overtaken, "it has no task to give up");
+    assert!(!robot.changes.facts().overtaken, "it has no task to give up");
 }
 
 /// A team that stands near a node of another tree can be attached there, and most of its robots come to another's aid.
@@ -519,13 +519,13 @@ fn a_leader_that_takes_its_post_along_is_not_bound_by_what_depends_on_it() {
     let Duty::Relay(Relay(held)) = *robot.duty else { panic!("it holds a fixed post") };
     robot.duty.is(Duty::Bound(Bound(held)));
     robot.measures();
-    assert!(robot.facts.may_leave_post);
+    assert!(robot.changes.facts().may_leave_post);
     robot.holds(primary(30, None, 13));
     robot.measures();
-    assert!(!robot.facts.burdened);
+    assert!(!robot.changes.facts().burdened);
     robot.knows_task(north(1.0));
     robot.measures();
-    assert!(robot.facts.burdened, "a robot could relieve it");
+    assert!(robot.changes.facts().burdened, "a robot could relieve it");
 }
 
 #[test]

@@ -33,7 +33,7 @@ fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
     assert!(corrects(0.001, &|robot| robot.body.is_moving_by(Vector::new(0.1, 0.0))));
     for (still, tries) in [(0, false), (2, false), (3, true), (4, false), (7, true)] {
         let wants = |robot: &mut Robot| {
-            robot.navigation.turn_to(east(1.0));
+            robot.negotiation.navigation_mut().turn_to(east(1.0));
             robot.body.waits(still);
         };
         assert_eq!(corrects(0.001, &wants), tries, "{still}");
@@ -347,7 +347,7 @@ fn a_subgroup_has_arrived_when_the_robot_at_its_end_has_given_its_post_up() {
             agreement.give_up(3);
         }
         robot.measures();
-        robot.facts.subgroup_arrived
+        robot.changes.facts().subgroup_arrived
     };
     assert!(arrived(&[0, 1, 2], true));
     assert!(!arrived(&[0, 1, 2], false), "two would hold the post");

@@ -4,7 +4,7 @@ use pleach_discrete::network::{Offer, Reply};
 
 use super::*;
 use crate::network::beacon::TeamReport;
-use crate::network::robot::ExchangeEffect;
+use crate::network::robot::{ExchangeEffect, Facts};
 use crate::network::roll::Absent;
 use crate::network::scenario::Strategy;
 
@@ -382,7 +382,7 @@ fn a_member_that_makes_way_for_the_team_looks_for_no_partner() {
         let mut robot = stuck(5);
         robot.holds(primary(30, Some(31), 13));
         let report = |members: u32| Some(TeamReport { members, ..team::report(5, None, None) });
-        robot.team.is_told(report(2));
+        robot.mission.team_mut().review(report(2));
         let ahead = beacon(2, east(2.05 * CLEARANCE), primary(31, None, 30), &[31, 30, 13]);
         robot.hears(Beacon { way, team: report(1), ..ahead });
         robot
@@ -404,7 +404,7 @@ fn a_member_that_stands_behind_is_a_partner() {
         |members: u32, still: u32| Some(TeamReport { members, ..team::report(still, None, None) });
     let beside = |own: u32, other: u32, still: u32| {
         let mut robot = stuck(5);
-        robot.team.is_told(report(own, 5));
+        robot.mission.team_mut().review(report(own, 5));
         let team = report(other, still);
         robot.hears(Beacon {
             team,
@@ -426,7 +426,7 @@ fn a_member_that_stands_behind_is_a_partner() {
         let mut robot = robot();
         robot.holds(primary(31, Some(30), 13));
         robot.advances_to(east(3.0));
-        robot.team.is_told(report(own, still));
+        robot.mission.team_mut().review(report(own, still));
         let duty = holding(primary(30, None, 31), west(BESIDE));
         let mut mover = beacon(1, west(BESIDE), primary(30, None, 31), &[30, 31, 13]);
         mover.offer = Some(Offer { to: 0, number: 1, duty });
@@ -452,7 +452,12 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
     assert!(away(4.0 - LITTLE) && !away(4.0 + LITTLE), "it is too far away");
     assert!(!relieved(&|_, mover| mover.announced = None), "it goes by no announcement");
     assert!(!relieved(&|robot, _| robot.mission.goes_by(None)), "this one goes by none");
-    assert!(!relieved(&|robot, _| robot.facts.path_announced = true), "it has yet to learn Σ");
+    assert!(
+        !relieved(&|robot, _| robot
+            .changes
+            .sees(Facts { path_announced: true, ..*robot.changes.facts() })),
+        "it has yet to learn Σ"
+    );
     let moves = |robot: &mut Robot, _: &mut Beacon| {
         robot.holds(primary(20, None, 13));
         robot.mission.is(Mission::Advance(Advance { path: None, in_vain: false }));

@@ -181,12 +181,16 @@ fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
     let mut robot = leader();
     robot.body.waits(4);
     robot.review_team();
-    let own = robot.team.report().expect("it leads");
+    let own = robot.mission.team().report().expect("it leads");
     assert_eq!((own.still, own.slack, own.saturated), (4, None, None), "its parent is not heard");
     assert!((own.remaining - 3.0).abs() < 1e-9);
     robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
     robot.review_team();
-    assert_eq!(robot.team.report().and_then(|team| team.slack), Some(0), "its link is short");
+    assert_eq!(
+        robot.mission.team().report().and_then(|team| team.slack),
+        Some(0),
+        "its link is short"
+    );
 
     let follows = |front: TeamReport, still: u32| {
         let mut robot = leader();
@@ -195,7 +199,7 @@ fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
         let ahead = beacon(1, east(1.0), primary(31, None, 30), &[31, 30]);
         robot.hears(Beacon { team: Some(front), ..ahead });
         robot.review_team();
-        robot.team.report().expect("the robot ahead has told")
+        robot.mission.team().report().expect("the robot ahead has told")
     };
     let behind = |report: TeamReport| TeamReport { members: 3, ..report };
     assert_eq!(follows(report(7, None, None), 9), behind(report(7, None, None)));
@@ -203,11 +207,11 @@ fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
 
     robot.mission.is(Mission::Idle(super::super::super::mission::Idle));
     robot.review_team();
-    assert_eq!(robot.team.report(), None, "the team does not move");
+    assert_eq!(robot.mission.team().report(), None, "the team does not move");
     let mut posted = leader();
     posted.holds(fixed(20, 13));
     posted.review_team();
-    assert_eq!(posted.team.report(), None, "it is not of the team");
+    assert_eq!(posted.mission.team().report(), None, "it is not of the team");
 }
 
 /// A member whose link is shorter than 0.95 d_build has room to move.
@@ -217,7 +221,7 @@ fn a_link_is_slack_below_its_length_by_a_twentieth() {
         let mut robot = leader();
         robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
         robot.review_team();
-        robot.team.report().expect("it leads").slack
+        robot.mission.team().report().expect("it leads").slack
     };
     let bound = 0.95 * leader().build_length();
     assert_eq!((slack(bound - LITTLE), slack(bound + LITTLE)), (Some(0), None));
@@ -233,7 +237,7 @@ fn links_carry_no_more_where_a_robot_sends_nearly_all_the_time_whatever_is_left_
         robot.routing.plans(&[load]);
         robot.routing.leaves(0.0);
         robot.review_team();
-        let team = robot.team.report().expect("it leads");
+        let team = robot.mission.team().report().expect("it leads");
         (team.slack, team.saturated)
     };
     assert_eq!(told(SATURATED - LITTLE), (Some(0), None));
@@ -250,7 +254,7 @@ fn a_follower_right_behind_the_next_has_no_use_for_room() {
         let ahead = beacon(1, east(gap), primary(31, None, 30), &[31, 30]);
         robot.hears(Beacon { team: Some(report(3, None, None)), ..ahead });
         robot.review_team();
-        robot.team.report().expect("the robot ahead has told").slack
+        robot.mission.team().report().expect("the robot ahead has told").slack
     };
     let bunched = 2.6 * CLEARANCE;
     assert_eq!((slack(bunched - LITTLE), slack(bunched + LITTLE)), (None, Some(0)));
@@ -306,7 +310,7 @@ fn the_first_of_the_team_counts_for_how_long_it_stands_still_without_need() {
         }
         robot.review_team();
         robot.measures();
-        robot.facts.stalled
+        robot.changes.facts().stalled
     };
     let bound = 0.96 * leader().build_length();
     assert_eq!((stalled(0.5, false), stalled(0.5, true)), (4.0, 0.0));
@@ -323,7 +327,7 @@ fn a_team_that_does_not_hear_of_its_leader_does_not_wait_for_ever() {
     robot.body.waits(robot.patience().ceil() as u32);
     robot.review_team();
     robot.measures();
-    assert_eq!((robot.team.report(), robot.facts.pending), (None, false));
+    assert_eq!((robot.mission.team().report(), robot.changes.facts().pending), (None, false));
     robot.jump_mission().expect("its guards have values");
     let Notice::Ended { outcome, reason, .. } = robot.notice() else { panic!("it waits") };
     assert_eq!(*outcome, Outcome::Blocked);
@@ -339,7 +343,7 @@ fn only_the_newcomer_is_on_its_way_to_the_robot_that_it_joined() {
             robot.hears(beacon(1, west(0.5), post, &[29, 13]));
         }
         robot.measures();
-        robot.facts.pending
+        robot.changes.facts().pending
     };
     assert!(is_pending(30, None), "the robot that it joined is not heard");
     assert!(is_pending(30, Some(primary(29, None, 13))), "that one is not attached to it");

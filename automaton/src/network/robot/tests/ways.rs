@@ -79,7 +79,7 @@ fn a_waypoint_that_is_about_as_good_is_kept() {
     let keeps = |aside: f64, still: u32| {
         let mut robot = mover(&[]);
         let kept = east(1.0) + Vector::new(0.0, aside);
-        robot.navigation.turn_to(kept);
+        robot.negotiation.navigation_mut().turn_to(kept);
         robot.body.waits(still);
         waypoint(&mut robot) == kept
     };
@@ -90,14 +90,14 @@ fn a_waypoint_that_is_about_as_good_is_kept() {
     let near = |away: f64| {
         let mut robot = mover(&[]);
         let kept = HERE + Vector::new(0.0, away);
-        robot.navigation.turn_to(kept);
+        robot.negotiation.navigation_mut().turn_to(kept);
         waypoint(&mut robot) == kept
     };
     assert!(near(0.1 * CLEARANCE + LITTLE) && !near(0.1 * CLEARANCE - LITTLE));
     let mut hidden = mover(&[]);
     hidden.body.is_at(Point::new(6.5, 7.5));
     let behind = Point::new(8.5, 7.5);
-    hidden.navigation.turn_to(behind);
+    hidden.negotiation.navigation_mut().turn_to(behind);
     let goal = Point::new(8.5, 7.4);
     assert_ne!(hidden.first_waypoint(goal), Some(behind), "it is behind the pillar");
 }

@@ -20,15 +20,15 @@ fn a_mover_asks_for_way_when_it_has_been_stuck_for_long() {
     let mut mover = robot();
     mover.holds(primary(30, None, 13));
     mover.advances_to(east(3.0));
-    mover.navigation.turn_to(east(3.0));
+    mover.negotiation.navigation_mut().turn_to(east(3.0));
     for (periods, asks) in [(0, false), (15, false), (16, true), (17, true)] {
         mover.body.waits(periods);
         assert_eq!(mover.way_asked_for().is_some(), asks, "{periods}");
     }
-    mover.navigation.stop();
+    mover.negotiation.navigation_mut().stop();
     assert_eq!(mover.way_asked_for(), None, "it wants to go nowhere");
     let mut parked = posted();
-    parked.navigation.turn_to(east(0.1));
+    parked.negotiation.navigation_mut().turn_to(east(0.1));
     parked.body.waits(20);
     assert_eq!(parked.way_asked_for(), None, "it stands where it should");
     parked.hears(asking(0.1));
@@ -73,7 +73,7 @@ fn a_member_of_the_team_makes_way_for_those_ahead_of_it() {
         let mut robot = robot();
         robot.holds(primary(31, Some(30), 13));
         let report = |members: u32| Some(TeamReport { members, ..team::report(20, None, None) });
-        robot.team.is_told(report(own));
+        robot.mission.team_mut().review(report(own));
         robot.hears(Beacon { way: Some(way), team: report(other), ..asking(2.05 * CLEARANCE) });
         robot.place_aside().is_some_and(|place| (place - HERE).norm() <= 3.0 * CLEARANCE)
     };
@@ -194,7 +194,7 @@ fn who_gives_up_stepping_aside_asks_for_no_way() {
     robot.holds(redundant(20, 13));
     robot.hears(beacon(2, Point::new(5.0, 4.4), fixed(13, 12), &[13, 12]));
     robot.hears(asking(0.1));
-    robot.navigation.turn_to(east(0.1));
+    robot.negotiation.navigation_mut().turn_to(east(0.1));
     robot.body.waits(20);
     // The way of the mover now leads by at such a distance that no place beside is better.
     let shift = Vector::new(0.0, 2.15 * CLEARANCE);
