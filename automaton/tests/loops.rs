@@ -343,7 +343,10 @@ fn a_sample_passes_only_where_its_event_cannot_be_taken() {
     assert!(alone.check().findings().is_empty(), "{}", alone.check());
     let product = alone.product().expect("all is formulas");
     let locations: Vec<&str> = product.locations().iter().map(|one| one.as_str()).collect();
-    assert_eq!(locations, ["off", "off, sampling warm", "on, sampling warm", "on"]);
+    assert_eq!(
+        locations,
+        ["off (ticking)", "off (sampling warm)", "on (sampling warm)", "on (ticking)"]
+    );
     let same = Composition::builder().add("room", &product).build().expect("it is one part");
     let chances = (0..20).map(|seed| Policy::Random { seed });
     for policy in chances.chain([Policy::Early, Policy::Late]) {

@@ -100,7 +100,7 @@ pub use pleach_continuous::flow::Method;
 pub use builder::{CompositionBuilder, CompositionError};
 pub use channel::Channel;
 pub use exploration::{Exploration, ExplorationError, Reached};
-pub use product::ProductError;
+pub use product::{ProductError, without_clocks};
 pub use replay::ReplayError;
 pub use settings::{Accumulation, Policy, Settings};
 pub use simulation::{Failure, Halt, Move, Simulation, SimulationError, Taken};

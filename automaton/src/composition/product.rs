@@ -6,7 +6,8 @@ use pleach_discrete::Urgency;
 use pleach_guards::{Expression, Predicate, Substitution, always, never, not, variable};
 use thiserror::Error;
 
-use super::Composition;
+use super::sampler::{SAMPLING, TICKING};
+use super::{Component, Composition};
 use crate::automaton::Automaton;
 use crate::builder::{BuildError, Builder};
 use crate::check::model::{Effect, Model, Motion, Transition};
@@ -55,8 +56,9 @@ impl Composition {
     /// is one transition for each choice of transitions of its participants; it is forced if one of
     /// them is.
     ///
-    /// Clocks that sample are coordinates, and no part of the names of locations, except where further events are
-    /// sampled at the same instant. A sample passes where its event cannot be taken.
+    /// Clocks that sample are coordinates. A clock of several events stands at the end of the names of locations, as in
+    /// `on (ticking)` and `on (sampling warm)`: [`without_clocks`] is what they have in common. A sample passes where its
+    /// event cannot be taken.
     ///
     /// Every run of the composition is one of the product. Where guards of several transitions on one
     /// label hold at once, of which a component takes the first, the product may take each.
@@ -90,6 +92,15 @@ impl Composition {
     }
 }
 
+/// The name of a location of a [product](Composition::product) without the clocks at its end: where the components
+/// are, whatever is being sampled.
+pub fn without_clocks(location: &str) -> &str {
+    let is_of_clocks = |(_, clocks): &(&str, &str)| {
+        clocks.ends_with(')') && (clocks.starts_with(TICKING) || clocks.starts_with(SAMPLING))
+    };
+    location.rsplit_once(" (").filter(is_of_clocks).map_or(location, |(own, _)| own)
+}
+
 /// The transitions that are taken together: components, and for each the number of its transition.
 type Jump = Vec<(usize, usize)>;
 
@@ -103,7 +114,7 @@ struct Product<'a> {
 
 impl<'a> Product<'a> {
     fn of(composition: &'a Composition) -> Result<Self, ProductError> {
-        let renaming = |component: &super::Component| {
+        let renaming = |component: &Component| {
             let own = component.blueprint.coordinates.iter().zip(&component.slots);
             Substitution::new(
                 own.map(|(name, slot)| (*name, variable(&composition.variables[*slot]))),
@@ -218,10 +229,19 @@ impl<'a> Product<'a> {
 
     fn name(&self, combination: &[usize]) -> Name {
         let parts = self.composition.components.iter().zip(combination);
-        // Clocks stand in their first location wherever time passes.
-        let parts = parts.filter(|(component, mode)| component.sampling.is_none() || **mode > 0);
-        let parts: Vec<&str> = parts.map(|(component, mode)| component.mode(*mode).name).collect();
-        Name::new(&parts.join(", "))
+        let (clocks, own): (Vec<_>, Vec<_>) =
+            parts.partition(|(component, _)| component.sampling.is_some());
+        let named = |parts: &[(&Component, &usize)]| {
+            let names = parts.iter().map(|(component, mode)| component.mode(**mode).name);
+            names.collect::<Vec<_>>().join(", ")
+        };
+        // A clock of one event has one location.
+        let is_shared = |(component, _): &(&Component, _)| component.blueprint.modes.len() > 1;
+        let clocks: Vec<_> = clocks.into_iter().filter(is_shared).collect();
+        Name::new(&match clocks.is_empty() {
+            true => named(&own),
+            false => format!("{} ({})", named(&own), named(&clocks)),
+        })
     }
 
     fn function(&self, component: usize, part: &str) -> ProductError {

@@ -49,6 +49,10 @@ pub(super) struct Sample {
 const CLOCK: &str = "τ";
 /// A sample at which the event cannot be taken.
 const MISSED: &str = "missed";
+/// Where a clock waits for its instant.
+pub(super) const TICKING: &str = "ticking";
+/// Where it waits for a further event at that instant, whose name follows.
+pub(super) const SAMPLING: &str = "sampling ";
 
 impl Clock {
     /// The clock as a component, joined by its labels.
@@ -99,8 +103,8 @@ impl Clock {
     /// The location in which it waits for a sample.
     fn place(&self, number: usize) -> Name {
         match number {
-            0 => Name::new("ticking"),
-            _ => Name::new(&format!("sampling {}", self.samples[number].label)),
+            0 => Name::new(TICKING),
+            _ => Name::new(&format!("{SAMPLING}{}", self.samples[number].label)),
         }
     }
 }

@@ -84,12 +84,12 @@ pub fn falsify<'a, L: Location + Sync, E: Event + Sync, S: Coordinates>(
 /// Where a run comes nearest to forbidden states.
 fn nearest(run: &Run, forbidden: &[Forbidden]) -> Option<Nearest> {
     let Run { trajectory, parameters, lawful, .. } = run;
-    let names = &trajectory.components().first()?.locations;
+    let names = trajectory.components().first()?.locations.iter().map(String::as_str);
+    let places: Vec<Vec<bool>> = forbidden.iter().map(|one| one.places(names.clone())).collect();
     let mut nearest: Option<Nearest> = None;
     for (j, (location, states)) in (0..).zip(followed(trajectory)).take(*lawful) {
-        let location = names.get(location)?;
-        let here = |one: &Forbidden| one.location.as_ref().is_none_or(|name| name == location);
-        for (number, one) in forbidden.iter().enumerate().filter(|(_, one)| here(one)) {
+        let here = |number: usize| places[number].get(location) == Some(&true);
+        for (number, one) in forbidden.iter().enumerate().filter(|(number, _)| here(*number)) {
             for (t, values) in &states {
                 let own = trajectory.variables().iter().zip(values);
                 let own = own.map(|(name, value)| (name.as_str(), *value));

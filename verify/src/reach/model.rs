@@ -125,8 +125,8 @@ pub enum ModelError {
     },
     /// An event is taken at samples, by a clock that is no coordinate.
     #[error(
-        "event `{event}` is sampled, by a clock that is no coordinate of the automaton: add the \
-         automaton to a composition and enclose its `product()`, which has the clock"
+        "event `{event}` is sampled, by a clock that is no coordinate of the automaton: enclose \
+         `automaton.alone()?.product()?`, which has the clock"
     )]
     Sampled {
         /// The event.

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use pleach_automaton::composition::without_clocks;
 use pleach_automaton::{Automaton, Coordinates};
 use pleach_discrete::{Event, Location};
 use pleach_guards::{Comparison, Expression, Interval, Predicate, Relation, constant, not};
@@ -18,7 +19,8 @@ use super::settings::{InvalidSetting, Settings};
 /// States that no run may come to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forbidden {
-    /// The name of the location in which they are forbidden; without one, everywhere.
+    /// The name of the location in which they are forbidden; without one, everywhere. In a product whose clocks sample
+    /// several events, a name [without clocks](without_clocks) is every location that differs in the clocks alone.
     pub location: Option<String>,
     /// The states.
     pub states: Predicate,
@@ -110,9 +112,16 @@ impl Forbidden {
         Forbidden { location: None, states }
     }
 
-    /// These states, in one location.
+    /// These states, in one [location](Forbidden::location).
     pub fn within(location: &str, states: Predicate) -> Self {
         Forbidden { location: Some(location.to_owned()), states }
+    }
+
+    /// Of locations with these names: in which ones the states are forbidden.
+    pub(super) fn places<'n>(&self, names: impl Iterator<Item = &'n str> + Clone) -> Vec<bool> {
+        let Some(asked) = &self.location else { return names.map(|_| true).collect() };
+        let is_exact = names.clone().any(|name| name == asked);
+        names.map(|name| asked == if is_exact { name } else { without_clocks(name) }).collect()
     }
 
     /// The states in which the margin of a predicate is below `margin`: none of them may be reached
@@ -197,21 +206,14 @@ pub fn prove(
 ) -> Result<Proof, ReachError> {
     let variables = model.variables();
     check_starts(model, starts)?;
-    let region = |one: &Forbidden| -> Result<(Option<usize>, Region), ReachError> {
-        let place = |name: &String| {
-            let mut locations = model.locations().iter();
-            locations.position(|place| place.name == *name).ok_or_else(|| ReachError::Location {
-                location: name.clone(),
-                known: model
-                    .locations()
-                    .iter()
-                    .map(|place| format!("`{}`", place.name))
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            })
-        };
-        let location = one.location.as_ref().map(place).transpose()?;
-        Ok((location, Region::exactly(&one.states, variables)?))
+    let names = model.locations().iter().map(|place| &*place.name);
+    let region = |one: &Forbidden| -> Result<(Vec<bool>, Region), ReachError> {
+        let places = one.places(names.clone());
+        if let Some(location) = one.location.clone().filter(|_| !places.contains(&true)) {
+            let known = names.clone().map(|name| format!("`{name}`")).collect::<Vec<_>>();
+            return Err(ReachError::Location { location, known: known.join(", ") });
+        }
+        Ok((places, Region::exactly(&one.states, variables)?))
     };
     let regions = forbidden.iter().map(region).collect::<Result<Vec<_>, _>>()?;
     let conjunctions = regions.iter().flat_map(|(_, region)| &region.alternatives);
@@ -220,8 +222,8 @@ pub fn prove(
     let mut clearances = vec![f64::INFINITY; forbidden.len()];
     let mut doubts = Vec::new();
     let mut watch = |visit: &super::explore::Visit, segment: &Segment| {
-        for (number, (location, region)) in regions.iter().enumerate() {
-            if location.is_some_and(|location| location != visit.location) {
+        for (number, (places, region)) in regions.iter().enumerate() {
+            if !places[visit.location] {
                 continue;
             }
             for conjunction in &region.alternatives {

@@ -171,6 +171,37 @@ fn a_sampled_loop_takes_every_sample_that_it_can() {
     assert!(matches!(alone, Err(ModelError::Sampled { event }) if event == "cold"));
 }
 
+/// Every run trips at the second sample and is reset by the check at the same instant.
+#[test]
+fn a_location_is_entered_whatever_its_clock_samples_then() {
+    let [running, tripped, sample, check] =
+        ["running", "tripped", "sample", "check"].map(Name::new);
+    let state = Record::new([("x", 0.0)]).unwrap();
+    let x = &state.coordinates()[0];
+    let automaton: Named = Automaton::starting_in(running)
+        .initially(state.clone())
+        .throughout([x.rate(1.0)])
+        .transition(from(running).on(sample).to(tripped).may(x.at_least(0.9)))
+        .transition(from(tripped).on(check).to(running).may(always()))
+        .every(sample, 0.5)
+        .every(check, 0.5)
+        .build()
+        .unwrap();
+    let product = automaton.alone().unwrap().product().unwrap();
+    let start = [boxed(&[(0.0, 0.0), (0.5, 0.5)])];
+    let settings = Settings { horizon: 2.0, step: 0.02, ..Settings::default() };
+    let ask = |location| {
+        let forbidden = [Forbidden::within(location, always())];
+        verify(&product, &[], &start, &forbidden, &settings, &Effort::default())
+    };
+    for location in ["tripped", "tripped (sampling check)", "running (sampling check)"] {
+        assert!(matches!(ask(location), Ok(Answer::Violated(_))), "{location}");
+    }
+    let message = ask("trip").unwrap_err().to_string();
+    let known = "there is no location `trip`: there are `running (ticking)`, ";
+    assert!(message.starts_with(known), "{message}");
+}
+
 #[test]
 fn functions_have_no_product() {
     let only = Name::new("flow");
