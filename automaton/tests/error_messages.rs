@@ -228,7 +228,17 @@ fn compositions_say_what_does_not_fit() {
         (pair().rename("knock", "push"), "the component added last has no event `knock`".into()),
         (
             pair().connect("left.q", "right.noise"),
-            "no component has the variable `right.noise`: write `component.coordinate`".into(),
+            "no component has the variable `right.noise`: `right` has `p`, `q`".into(),
+        ),
+        (
+            pair().connect("up.q", "left.q"),
+            "no component has the variable `up.q`: write `component.coordinate`, of a component among \
+             `left`, `right`"
+                .into(),
+        ),
+        (
+            pair().add("dim", &built(lamp().signal("half", 0.5 * &heat))).connect("left.q", "dim.half"),
+            format!("input `dim.half` {misread} `left.q`: it is a signal, and only coordinates can be inputs"),
         ),
         (
             pair().connect("left.q", "left.q"),

@@ -140,6 +140,10 @@ fn counter() -> Automaton<Place, Cue, Counter> {
 
 /// A counter that is sampled, and one that adds up what it hears of it a quarter of a second later.
 fn counted(channel: Channel) -> Result<Composition, CompositionError> {
+    counted_every(1.0, channel.taking(0.25, 0.25))
+}
+
+fn counted_every(period: f64, channel: Channel) -> Result<Composition, CompositionError> {
     let Sum { total, rate } = Sum::coordinates();
     let sum = Automaton::starting_in(Running)
         .initially(Sum { total: 0.0, rate: 0.0 })
@@ -150,8 +154,8 @@ fn counted(channel: Channel) -> Result<Composition, CompositionError> {
     Composition::builder()
         .add("counter", &counter())
         .add("sum", &sum)
-        .every("counter.sample", 1.0)
-        .channel(channel.taking(0.25, 0.25))
+        .every("counter.sample", period)
+        .channel(channel)
         .build()
 }
 
@@ -333,6 +337,16 @@ fn channels_that_lose_messages_are_reported() {
     let message = "warning: loses messages: component `counter.sample →`: messages are sent every 0.01 s and take up to \
                    0.1 s, so 11 can be under way, and it holds 10: let it hold 11, with `holding`, or messages are lost";
     assert!(report.starts_with(message), "{report}");
+}
+
+/// 512 messages of 10 ms are under way for less than 5.12 s.
+#[test]
+fn a_check_advises_no_more_places_than_a_channel_can_have() {
+    let channel = Channel::holding_last("counter.sample").held("counter.n", "sum.r", 0.0);
+    let both = counted_every(0.01, channel.taking(1e9, 1e9)).expect("they fit together");
+    let report = both.check().to_string();
+    let advice = "no channel holds more than 512, so let the period be above 1.953125e6 s, or the longest time below 5.12e0 s";
+    assert!(report.contains(advice), "{report}");
 }
 
 /// Wherever a run goes by chance, it samples what it can.

@@ -1,6 +1,6 @@
 //! The semantics of channels, as `docs/semantics.md` states it, clause by clause.
 
-use pleach_automaton::check::Finding;
+use pleach_automaton::check::{Finding, Kind};
 use pleach_automaton::composition::{Channel, CompositionBuilder, CompositionError};
 use pleach_automaton::{
     Automaton, Composition, Policy, Reason, Settings, Trajectory, coordinates, from,
@@ -247,7 +247,8 @@ fn a_channel_begins_and_ends_at_events_by_the_names_that_they_are_given() {
     assert_eq!(told(&["call"]), expected("call", "b.listen"));
     assert_eq!(told(&["listen", "call"]), expected("call", "listen"));
     let unknown = named(&[], "b.hear").map(|_| ()).expect_err("it has another name");
-    assert_eq!(unknown, CompositionError::UnknownMessage { event: HEAR.to_owned() });
+    let message = "no component has the event `b.hear`: `b` has `listen`";
+    assert!(unknown.to_string().starts_with(message), "{unknown}");
 }
 
 #[test]
@@ -373,9 +374,19 @@ fn channels_that_cannot_be_are_refused() {
         let parts = Composition::builder().add("a", &sender(1.0)).add("b", &receiver());
         change(parts).build().map(|_| ()).expect_err("it cannot be")
     };
-    let event = |name: &str| CompositionError::UnknownMessage { event: name.to_owned() };
-    assert_eq!(with(|it| it.channel(Channel::new("a.say", "b.hear"))), event("a.say"));
-    assert_eq!(with(|it| it.channel(Channel::new("a.tell", "c.hear"))), event("c.hear"));
+    let says = |fault: CompositionError, message: &str| {
+        assert!(fault.to_string().starts_with(message), "{fault}");
+    };
+    let unknown = with(|it| it.channel(Channel::new("a.say", "b.hear")));
+    says(unknown, "no component has the event `a.say`: `a` has `tell`");
+    let unknown = with(|it| it.channel(Channel::new("a.tell", "c.hear")));
+    let known = "write `component.event`, of a component among `a`, `b`";
+    says(unknown, &format!("no component has the event `c.hear`: {known}"));
+    let namesakes = with(|it| {
+        let last = || Channel::holding_last("a.tell");
+        it.channel(last()).channel(last())
+    });
+    says(namesakes, "channel `a.tell →`: another component has its name: give one of them its own");
     let twice = with(|it| it.channel(channel()).channel(channel().called("again")));
     assert_eq!(twice, CompositionError::HeardTwice { event: HEAR.to_owned() });
     let built = |change: fn(Channel) -> Channel| {
@@ -396,6 +407,17 @@ fn channels_that_cannot_be_are_refused() {
         let refused = built(change);
         assert!(matches!(refused, Err(CompositionError::Channel { .. })), "{refused:?}");
     }
+    let fault = |change: fn(Channel) -> Channel| built(change).expect_err("it cannot be");
+    says(
+        fault(|it| it.taking(0.03, 0.02)),
+        &format!("channel `{TELL} → {HEAR}`: its messages take from 0.03 s to 0.02 s"),
+    );
+    says(
+        fault(|it| it.holding(513)),
+        &format!("channel `{TELL} → {HEAR}`: it holds 513 messages, and"),
+    );
+    let fault = fault(|_| Channel::new(TELL, HEAR).held("a.x", "b.m", f64::NAN));
+    says(fault, &format!("channel `{TELL} → {HEAR}`: `b.m` is NaN before the first arrival"));
     let sound: [fn(Channel) -> Channel; 5] = [
         |it| it.taking(0.0, 0.0),
         |it| it.taking(1.0, 1.0),
@@ -404,6 +426,21 @@ fn channels_that_cannot_be_are_refused() {
         |it| it.lasting().holding(1),
     ];
     sound.into_iter().for_each(|change| assert_eq!(built(change), Ok(())));
+}
+
+/// By default a run takes an arrival only where an invariant ends.
+#[test]
+fn a_channel_without_bounds_is_reported() {
+    let keeps = |channel: Channel| {
+        let report = pair(1.0, channel).check();
+        report.findings().iter().any(|finding| finding.kind == Kind::KeepsMessages)
+    };
+    let unbounded = run(&pair(1.0, channel()), Policy::Late, 3.5);
+    assert!(jumps(&unbounded).iter().all(|(_, label)| *label != HEAR));
+    let at_once = run(&pair(1.0, channel().taking(0.0, 0.0)), Policy::Late, 3.5);
+    assert_eq!(jumps(&at_once)[..2], [(1.0, TELL), (1.0, HEAR)]);
+    assert!(keeps(channel()) && keeps(channel().losing()));
+    assert!(!keeps(channel().taking(0.0, 0.0)) && !keeps(channel().lasting()));
 }
 
 #[test]

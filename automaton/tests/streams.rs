@@ -109,8 +109,9 @@ fn a_log_has_both_sides_of_every_jump() {
 fn a_log_has_the_columns_of_choice() {
     let log = |columns: &[&str]| {
         let mut log = CsvLog::every(1.0, Vec::new()).columns(columns.iter().copied());
-        model(0.3).stream(Settings::default(), 0.0, &mut log).expect("it runs");
-        log.finish().map(|text| String::from_utf8(text).expect("it is text"))
+        let begun = model(0.3).stream(Settings::default(), 0.0, &mut log);
+        let text = begun.map(|_| log.finish().expect("it is written"));
+        text.map(|text| String::from_utf8(text).expect("it is text"))
     };
     let text = log(&["wave.s", "wave.p"]).expect("it is written");
     assert_eq!(text.lines().next(), Some("t,j,component,event,wave.s,wave.p"));
@@ -121,10 +122,15 @@ fn a_log_has_the_columns_of_choice() {
         .collect();
     assert_eq!(text.lines().nth(1), Some(&*format!("0,0,,,{},{}", start[0], start[1])));
     let fault = log(&["wave.p", "wave.q"]).expect_err("there is no such column").to_string();
-    assert!(
-        fault.starts_with("there is no column `wave.q`: there are `wave.p`, `wave.s`, "),
+    let known = "there is no column `wave.q`: there are `wave.p`, `wave.s`, ";
+    assert_eq!(
+        fault.strip_prefix("the run cannot be observed: ").map(|it| it.starts_with(known)),
+        Some(true),
         "{fault}"
     );
+    let fault = log(&["lag.n"]).expect_err("it is an input").to_string();
+    let source = "`lag.n` is an input: its values are in the column `counter.sample →.held 1`";
+    assert!(fault.ends_with(source), "{fault}");
 }
 
 /// A writer that fails is reported, once the run is over.
@@ -188,4 +194,26 @@ fn ten_million_ticks_take_no_memory() {
     };
     let [few, many] = [1e4, 1e7].map(held_after);
     assert!(many < few + 1024, "{few} kB, and then {many}");
+}
+
+/// A log or samples that could not be written as they are asked for stop the run before it begins.
+#[test]
+fn a_grid_of_times_that_makes_no_sense_is_refused() {
+    let refusal = |observer: &mut dyn RunObserver| {
+        let mut observer = observer;
+        model(0.3)
+            .stream(Settings::default(), 4.0, &mut observer)
+            .map(|_| ())
+            .map_err(|it| it.to_string())
+    };
+    for period in [0.0, -1.0, f64::NAN] {
+        let fault = format!(
+            "the run cannot be observed: the period of samples is {period} s: it has to be above 0, or ∞"
+        );
+        assert_eq!(refusal(&mut Samples::every(period)), Err(fault.clone()));
+        assert_eq!(refusal(&mut CsvLog::every(period, Vec::new())), Err(fault));
+    }
+    let fine = refusal(&mut Samples::every(1e-300)).expect_err("it would never end");
+    assert!(fine.contains("the period of samples is 1e-300 s, which numbers near"), "{fine}");
+    assert_eq!(refusal(&mut Samples::every(f64::INFINITY)), Ok(()));
 }

@@ -10,7 +10,7 @@ use super::product::{Product, explore};
 use super::reachability::Reach;
 use super::report::{Finding, FindingPlace, Kind, Report, Severity};
 use crate::composition::Composition;
-use crate::composition::channel::Crowding;
+use crate::composition::channel::{PLACES, Weakness};
 
 /// An event that components take together.
 pub(super) struct Label {
@@ -181,19 +181,36 @@ fn report_deadlocks(
     }
 }
 
-/// Channels that have fewer places than messages can be under way.
-pub(super) fn report_crowding(composition: &Composition, report: &mut Report) {
+/// Channels that do not carry all messages.
+pub(super) fn report_channels(composition: &Composition, report: &mut Report) {
     for component in &composition.components {
-        let Some(Crowding { places, needed, period, longest }) = component.crowding else {
-            continue;
+        let Some(weakness) = component.weakness else { continue };
+        let (kind, message) = match weakness {
+            Weakness::Crowded { places, needed, period, longest } => {
+                let remedy = match needed <= PLACES {
+                    true => format!("let it hold {needed}, with `holding`"),
+                    false => format!(
+                        "no channel holds more than {PLACES}, so let the period be above {:e} s, or the longest \
+                         time below {:e} s",
+                        longest / PLACES as f64,
+                        period * PLACES as f64
+                    ),
+                };
+                let message = format!(
+                    "messages are sent every {period} s and take up to {longest} s, so {needed} can be under way, \
+                     and it holds {places}: {remedy}, or messages are lost"
+                );
+                (Kind::LosesMessages, message)
+            }
+            Weakness::Untimed => {
+                let message = "nothing says when its messages arrive, and by default a run takes no arrival before an \
+                               invariant ends: bound their delay with `taking`, as `taking(0.0, 0.0)` for none";
+                (Kind::KeepsMessages, message.to_owned())
+            }
         };
-        let message = format!(
-            "messages are sent every {period} s and take up to {longest} s, so {needed} can be under way, and it \
-             holds {places}: let it hold {needed}, with `holding`, or messages are lost"
-        );
         let component = Some(component.name.clone());
         let place = FindingPlace { component, ..FindingPlace::default() };
-        report.add(Finding::new(Kind::LosesMessages, Severity::Warning, place, message));
+        report.add(Finding::new(kind, Severity::Warning, place, message));
     }
 }
 

@@ -55,6 +55,7 @@
 //! | lonely label | warning | does more than one component know it? |
 //! | deadlock | warning, or note where it depends on times and values | does a component wait for labels forever? |
 //! | loses messages | warning | does a channel hold all messages that a sampled component sends? |
+//! | keeps messages | warning | does anything say when the messages of a channel arrive? |
 //! | unread input | warning | is what is connected read? |
 //! | unexplored | note | was something too large to be looked at? |
 //!
@@ -137,7 +138,7 @@ impl Composition {
             reaches.push(reach);
         }
         labels::report_labels(&models, &reaches, &mut report);
-        labels::report_crowding(self, &mut report);
+        labels::report_channels(self, &mut report);
         labels::report_inputs(&models, &mut report);
         report.finished()
     }

@@ -114,6 +114,8 @@ pub enum Kind {
     Deadlock,
     /// A channel that holds fewer messages than can be under way.
     LosesMessages,
+    /// A channel whose messages may never arrive.
+    KeepsMessages,
     /// A connected input that no formula reads.
     UnreadInput,
     /// An exploration that was given up.
@@ -250,6 +252,7 @@ impl Kind {
             Kind::BlockedLabel => "blocked label",
             Kind::Deadlock => "deadlock",
             Kind::LosesMessages => "loses messages",
+            Kind::KeepsMessages => "keeps messages",
             Kind::UnreadInput => "unread input",
             Kind::Unexplored => "unexplored",
         }

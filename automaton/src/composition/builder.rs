@@ -11,8 +11,8 @@ use pleach_guards::{EvaluationError, Valuation};
 pub use error::CompositionError;
 
 use super::blueprint::{Blueprint, Wiring};
-use super::channel::Crowding;
-use super::sampler::{Clock, Sampler, Sampling};
+use super::channel::Weakness;
+use super::sampler::{Clock, Sample, Sampler, Sampling};
 use super::{Accumulation, Channel, Component, Composition};
 use crate::automaton::Automaton;
 use crate::check::model::Model;
@@ -50,8 +50,8 @@ struct Part {
     samplings: Vec<(&'static str, Sampling)>,
     /// What it samples, if it is a clock.
     clock: Option<Clock>,
-    /// How it is too small, if it is a channel that is.
-    crowding: Option<Crowding>,
+    /// Why it does not carry all messages, if it is a channel that does not.
+    weakness: Option<Weakness>,
     /// Compiles it anew, with formulas in the place of coordinates.
     compile: Arc<Compile>,
     renamed: Vec<(String, String)>,
@@ -95,10 +95,13 @@ impl CompositionBuilder {
     }
 
     /// Adds a component that joins others, such as a channel, whose name has those of events.
-    pub(super) fn add_joint(self, name: &str, joint: &Automaton<Name, Name, Record>) -> Self {
+    pub(super) fn add_joint(mut self, name: &str, joint: &Automaton<Name, Name, Record>) -> Self {
         match joint.initial_state() {
             Some(state) => self.add_named(name, joint, state.clone()),
-            None => self,
+            None => {
+                self.fault(CompositionError::NoInitialState { component: name.to_owned() });
+                self
+            }
         }
     }
 
@@ -154,7 +157,7 @@ impl CompositionBuilder {
                 signals,
                 samplings,
                 clock: None,
-                crowding: None,
+                weakness: None,
                 compile,
                 renamed: Vec::new(),
                 accumulation: None,
@@ -268,6 +271,7 @@ impl CompositionBuilder {
         self.check_names()?;
         self = self.join_samplers()?.join_channels()?;
         self.check_names()?;
+        let inputs = self.connections.clone();
         self.wire_signals()?;
         let sources = self.sources()?;
         let mut composition = Composition {
@@ -276,6 +280,7 @@ impl CompositionBuilder {
             variables: Vec::new(),
             initial: Vec::new(),
             signals: Vec::new(),
+            inputs,
             groups: Vec::new(),
         };
         let slots = self.lay_out(&sources, &mut composition);
@@ -290,8 +295,12 @@ impl CompositionBuilder {
             let place_of = |name: &str| labels.iter().position(|label| label.name == name);
             let sampling = part.clock.as_ref().map(|clock| {
                 let samples = clock.samples.iter();
-                let samples = samples.filter_map(|sample| place_of(&sample.label)).collect();
-                (clock.sampling, samples)
+                let place = |sample: &Sample| {
+                    let label = sample.label.clone();
+                    place_of(&label).ok_or(CompositionError::UnknownLabel { label })
+                };
+                let samples = samples.map(place).collect::<Result<_, _>>();
+                samples.map(|samples| (clock.sampling, samples))
             });
             let component = Component {
                 events: part.event_names().map(str::to_owned).collect(),
@@ -299,8 +308,8 @@ impl CompositionBuilder {
                 slots: slots.slots[places.clone()].to_vec(),
                 owned: sources[places].iter().map(Option::is_none).collect(),
                 labels: (0..part.blueprint.events.len()).map(own_label).collect(),
-                sampling,
-                crowding: part.crowding,
+                sampling: sampling.transpose()?,
+                weakness: part.weakness,
                 blueprint: part.blueprint,
                 model: part.model,
                 group: 0,

@@ -106,8 +106,8 @@ pub(super) struct Content {
 
 impl Channel {
     /// From the event `output` of a component to the event `input` of a component, both written
-    /// `component.event`. It holds one message at a time, which takes any time: in a run as long as
-    /// the policy says.
+    /// `component.event`. It holds one message at a time, which takes [any time](Self::taking): in a run as long as
+    /// the policy says, by default until an invariant ends.
     ///
     /// Several channels may have one output, which is then sent on all of them. An input belongs to
     /// one channel.
@@ -117,7 +117,8 @@ impl Channel {
     }
 
     /// From the event `output` of a component, written `component.event`, to [held](Self::held)
-    /// values: messages arrive without an event of a receiver. The channel is called after its output.
+    /// values: messages arrive without an event of a receiver, after [any time](Self::taking). The channel is called
+    /// after its output.
     ///
     /// A controller samples every 10 ms, and its output, the signal `u`, takes effect a tenth of a second later:
     ///
@@ -180,13 +181,15 @@ impl Channel {
         self
     }
 
-    /// A message takes at least `shortest` ≥ 0 and at most `longest` seconds.
+    /// A message takes at least `shortest` ≥ 0 and at most `longest` seconds, which is finite: with `taking(0.0, 0.0)` it
+    /// arrives at the instant at which it is sent. Without bounds it may arrive at any time, or never;
+    /// [`check`](crate::Composition::check) reports such a channel.
     pub fn taking(mut self, shortest: f64, longest: f64) -> Self {
         self.delay = Some((shortest, longest));
         self
     }
 
-    /// The channel holds up to `capacity` ≥ 1 messages; what is sent when it is full is lost. Of messages that are sent
+    /// The channel holds `capacity` messages, from 1 to 512; what is sent when it is full is lost. Of messages that are sent
     /// every T seconds, up to ⌊longest / T⌋ + 1 are under way: [`check`](crate::Composition::check) reports a channel
     /// that holds fewer.
     pub fn holding(mut self, capacity: usize) -> Self {
@@ -218,11 +221,17 @@ impl Channel {
         self.delay.is_some() && !self.is_lasting
     }
 
-    /// How it is too small for messages that are sent every `period` seconds, if it is.
-    pub(super) fn crowding(&self, period: f64) -> Option<Crowding> {
-        let (_, longest) = self.delay.filter(|_| !self.is_lasting)?;
-        let (places, needed) = (self.capacity, under_way(longest, period));
-        (places < needed).then_some(Crowding { places, needed, period, longest })
+    /// How it fails to carry messages that are sent every `period` seconds, if they are sent at even intervals.
+    pub(super) fn weakness(&self, period: Option<f64>) -> Option<Weakness> {
+        match self.delay {
+            _ if self.is_lasting => None,
+            None => Some(Weakness::Untimed),
+            Some((_, longest)) => {
+                let (places, period) = (self.capacity, period?);
+                let needed = under_way(longest, period);
+                (places < needed).then_some(Weakness::Crowded { places, needed, period, longest })
+            }
+        }
     }
 
     /// The channel as a component, with its labels and connections.
@@ -232,14 +241,30 @@ impl Channel {
         send: &str,
         arrive: &str,
     ) -> Result<CompositionBuilder, CompositionError> {
-        let refuse = |reason| CompositionError::Channel { channel: self.name.clone(), reason };
+        let refuse = |reason: &str| {
+            let (channel, reason) = (self.name.clone(), reason.to_owned());
+            CompositionError::Channel { channel, reason }
+        };
         if let Some((shortest, longest)) = self.delay
             && !(0.0 <= shortest && shortest <= longest && longest.is_finite())
         {
-            return Err(refuse("its messages take from a shortest time ≥ 0 to a longest one"));
+            return Err(refuse(&format!(
+                "its messages take from {shortest} s to {longest} s: the shortest time has to be at least 0, and \
+                 the longest finite and no less"
+            )));
         }
-        if self.capacity == 0 {
-            return Err(refuse("it has to hold at least one message"));
+        if !(1..=PLACES).contains(&self.capacity) {
+            return Err(refuse(&format!(
+                "it holds {} messages, and has to hold from 1 to {PLACES}: with a longer period or a shorter \
+                 delay, fewer are under way",
+                self.capacity
+            )));
+        }
+        let is_nan = |content: &&Content| content.initial.is_some_and(f64::is_nan);
+        if let Some(Content { input, .. }) = self.contents.iter().find(is_nan) {
+            return Err(refuse(&format!(
+                "`{input}` is NaN before the first arrival: it has to be a number"
+            )));
         }
         if self.inputs.is_empty() && self.carried().next().is_some() {
             return Err(refuse("without an event of the receiver, what is carried has to be held"));
@@ -249,7 +274,7 @@ impl Channel {
         }
         let automaton = Machine::of(self, send, arrive)
             .build()
-            .map_err(|_| refuse("a coordinate is carried twice"))?;
+            .map_err(|source| refuse(&source.to_string()))?;
         let mut builder = builder.add_joint(&self.name, &automaton).label(send);
         if !self.inputs.is_empty() {
             builder = builder.label(arrive);
@@ -264,15 +289,23 @@ impl Channel {
     }
 }
 
-/// A channel that has fewer places than messages can be under way.
+/// How many messages a channel may hold: each has its own clock, and each number of them a location.
+pub(crate) const PLACES: usize = 512;
+
+/// Why a channel does not carry all messages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Crowding {
-    pub(crate) places: usize,
-    pub(crate) needed: usize,
-    /// Of the sender, in seconds.
-    pub(crate) period: f64,
-    /// The longest time that a message takes, in seconds.
-    pub(crate) longest: f64,
+pub(crate) enum Weakness {
+    /// It has fewer places than messages can be under way.
+    Crowded {
+        places: usize,
+        needed: usize,
+        /// Of the sender, in seconds.
+        period: f64,
+        /// The longest time that a message takes, in seconds.
+        longest: f64,
+    },
+    /// Nothing says when they arrive.
+    Untimed,
 }
 
 /// ⌊`longest` / `period`⌋ + 1. A message that is sent while another arrives may come first, also where rounding alone

@@ -123,6 +123,8 @@ pub struct Composition {
     initial: Vec<f64>,
     /// Names of formulas of the variables, with these.
     signals: Vec<Signal>,
+    /// Inputs, each after the variable or signal that it reads.
+    inputs: Vec<(String, String)>,
     /// What moves and jumps by itself.
     groups: Vec<Group>,
 }
@@ -143,8 +145,8 @@ pub(crate) struct Component {
     labels: Vec<Option<usize>>,
     /// Of a clock: when it samples, and by location the label. Where that cannot be taken, it takes its own event.
     sampling: Option<(Sampling, Vec<usize>)>,
-    /// Of a channel that may lose messages: how it is too small.
-    pub(crate) crowding: Option<channel::Crowding>,
+    /// Of a channel that does not carry all messages: why.
+    pub(crate) weakness: Option<channel::Weakness>,
     /// The group that the component belongs to.
     group: usize,
     /// By coordinate: where its value is among those of the group.
@@ -183,6 +185,12 @@ impl Composition {
     /// The signals of the components, each with its formula of variables.
     pub fn signals(&self) -> impl ExactSizeIterator<Item = (&str, &Expression)> {
         self.signals.iter().map(|(name, formula)| (name.as_str(), formula))
+    }
+
+    /// The variable or signal that an input reads, if there is an input of that name.
+    pub(crate) fn source_of(&self, input: &str) -> Option<&str> {
+        let mut inputs = self.inputs.iter();
+        inputs.find(|(_, known)| known == input).map(|(source, _)| source.as_str())
     }
 
     /// The names of the locations of a component, in the order of their type; none for a component

@@ -50,6 +50,12 @@ pub use log::{CsvLog, Samples};
 
 /// Sees a run as it happens.
 pub trait RunObserver {
+    /// A run of `composition` up to `horizon` seconds is about to begin. It does not if this is an error, which says
+    /// what is wrong and what would be right.
+    fn begins(&mut self, _composition: &Composition, _horizon: f64) -> Result<(), String> {
+        Ok(())
+    }
+
     /// Time passes, up to a jump of any component or to the end of the run.
     fn flows(&mut self, _flow: &Flowing<'_>) {}
 
@@ -127,6 +133,10 @@ impl Jumping<'_> {
 impl RunObserver for () {}
 
 impl<O: RunObserver + ?Sized> RunObserver for &mut O {
+    fn begins(&mut self, composition: &Composition, horizon: f64) -> Result<(), String> {
+        (**self).begins(composition, horizon)
+    }
+
     fn flows(&mut self, flow: &Flowing<'_>) {
         (**self).flows(flow);
     }
@@ -137,6 +147,11 @@ impl<O: RunObserver + ?Sized> RunObserver for &mut O {
 }
 
 impl<A: RunObserver, B: RunObserver> RunObserver for (A, B) {
+    fn begins(&mut self, composition: &Composition, horizon: f64) -> Result<(), String> {
+        self.0.begins(composition, horizon)?;
+        self.1.begins(composition, horizon)
+    }
+
     fn flows(&mut self, flow: &Flowing<'_>) {
         self.0.flows(flow);
         self.1.flows(flow);
@@ -154,15 +169,17 @@ impl Composition {
     ///
     /// # Errors
     ///
-    /// As for [`run_with`](Self::run_with).
+    /// As for [`run_with`](Self::run_with), and [`SimulationError::Observer`] if the observer refuses to begin.
     pub fn stream(
         &self,
         settings: Settings,
         horizon: f64,
         observer: &mut impl RunObserver,
     ) -> Result<Finish, SimulationError> {
+        let simulation = Simulation::new(self, settings, horizon)?.unrecorded();
+        observer.begins(self, horizon).map_err(SimulationError::Observer)?;
         let mut view = View { composition: self, values: self.initial.clone(), observer };
-        Simulation::new(self, settings, horizon)?.unrecorded().finish(&mut view)
+        simulation.finish(&mut view)
     }
 }
 

@@ -50,8 +50,8 @@ impl fmt::Display for Completion {
         formatter.write_str(match self {
             Completion::Horizon => "all states up to the horizon are enclosed",
             Completion::Everything => "all states at all times are enclosed",
-            Completion::JumpLimit => "more jumps follow each other than the limit allows",
-            Completion::SegmentLimit => "there are more sets than the limit allows",
+            Completion::JumpLimit => "more jumps follow each other than `jump_limit` allows",
+            Completion::SegmentLimit => "there are more sets than `segment_limit` allows",
             Completion::Diverged => {
                 "a flow grows without bounds, or cannot be enclosed any farther"
             }
@@ -217,6 +217,10 @@ impl Search<'_> {
         let place = &self.model.locations()[entry.location];
         let Entry { location, from, depth, elapsed, start } = entry;
         let number = self.visits.len();
+        self.segments += 1;
+        if self.segments > self.settings.segment_limit {
+            return Outcome::Broken(Completion::SegmentLimit);
+        }
         let entering = self.bounds(location, &start);
         self.visits.push(Visit {
             location,

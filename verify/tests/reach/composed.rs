@@ -3,7 +3,9 @@
 use pleach_automaton::composition::{Policy, ProductError};
 use pleach_automaton::{Automaton, Composition, Name, Record, from};
 use pleach_guards::{Expression, Interval, Predicate, always, constant, variable};
-use pleach_verify::reach::{Answer, Effort, Forbidden, Model, ModelError, Settings, verify};
+use pleach_verify::reach::{
+    Answer, Completion, Effort, Forbidden, Model, ModelError, Settings, verify,
+};
 
 use super::support::{Named, boxed, enclosed, escape};
 
@@ -200,6 +202,34 @@ fn a_location_is_entered_whatever_its_clock_samples_then() {
     let message = ask("trip").unwrap_err().to_string();
     let known = "there is no location `trip`: there are `running (ticking)`, ";
     assert!(message.starts_with(known), "{message}");
+}
+
+/// However often a model samples, its question has an answer, which names the limit.
+#[test]
+fn a_period_far_below_the_horizon_ends_at_a_limit() {
+    let [off, on, cold, warm] = ["off", "on", "cold", "warm"].map(Name::new);
+    let room = Record::new([("T", 20.0)]).unwrap();
+    let t = &room.coordinates()[0];
+    for period in [1e-300, 1e-9, 1e-5] {
+        let automaton: Named = Automaton::starting_in(off)
+            .initially(room.clone())
+            .throughout([t.rate(1.0)])
+            .transition(from(off).on(cold).to(on).may(t.at_most(30.0)))
+            .transition(from(on).on(warm).to(off).may(t.at_most(30.0)))
+            .every(cold, period)
+            .every(warm, period)
+            .build()
+            .unwrap();
+        let product = automaton.alone().unwrap().product().unwrap();
+        let start = [boxed(&[(20.0, 20.0), (period, period)])];
+        let settings = Settings { horizon: 1.0, ..Settings::default() };
+        let forbidden = [Forbidden::anywhere(t.at_least(25.0))];
+        let effort = Effort { random: 4, rounds: 1, variations: 2, ..Effort::default() };
+        let answer = verify(&product, &[], &start, &forbidden, &settings, &effort).unwrap();
+        let Answer::Undecided(proof) = answer else { panic!("{answer:?}") };
+        assert_eq!(proof.enclosure.ending, Completion::JumpLimit, "{period}");
+        assert!(proof.enclosure.ending.to_string().contains("`jump_limit`"));
+    }
 }
 
 #[test]

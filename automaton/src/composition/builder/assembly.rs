@@ -4,6 +4,7 @@ use pleach_guards::{Expression, Substitution, always, variable};
 
 use super::{CompositionBuilder, CompositionError, Part};
 use crate::composition::blueprint::{Change, Leaving, Mode, ModeMotion};
+use crate::composition::channel::Weakness;
 use crate::composition::sampler::{Clock, Sample, Sampler};
 use crate::composition::{Component, Composition, Label};
 use crate::signals::{Signal, resolved};
@@ -50,6 +51,12 @@ impl CompositionBuilder {
     pub(super) fn join_channels(mut self) -> Result<Self, CompositionError> {
         let mut heard: Vec<String> = Vec::new();
         for channel in std::mem::take(&mut self.channels) {
+            if self.parts.iter().any(|part| part.name == channel.name) {
+                let reason =
+                    "another component has its name: give one of them its own, with `called`";
+                let (channel, reason) = (channel.name, reason.to_owned());
+                return Err(CompositionError::Channel { channel, reason });
+            }
             let (send, _) = self.end_of_channel(&channel.output, None)?;
             let shared = (channel.inputs.len() > 1).then(|| channel.name.clone());
             let mut arrive = format!("{} arrival", channel.name);
@@ -67,10 +74,11 @@ impl CompositionBuilder {
             for input in channel.carried() {
                 self.check_arrivals(input, &arrive)?;
             }
-            let crowding = self.period_of(&send).and_then(|period| channel.crowding(period));
+            let is_forced = self.parts.iter().any(|part| part.forces(&arrive));
+            let weakness = channel.weakness(self.period_of(&send));
             self = channel.join(self, &send, &arrive)?;
             if let Some(part) = self.parts.last_mut() {
-                part.crowding = crowding;
+                part.weakness = weakness.filter(|it| *it != Weakness::Untimed || !is_forced);
             }
         }
         match self.fault.take() {
@@ -109,7 +117,50 @@ impl CompositionBuilder {
             part.renamed.push((before.to_owned(), label.to_owned()));
             return Ok((label.to_owned(), number));
         }
-        Err(CompositionError::UnknownMessage { event: event.to_owned() })
+        let events = |part: &Part| {
+            let own = |event: &str| {
+                let own = event.strip_prefix(&*part.name).and_then(|it| it.strip_prefix('.'));
+                own.unwrap_or(event).to_owned()
+            };
+            part.event_names().map(own).collect()
+        };
+        let known = self.known(event, "event", events);
+        Err(CompositionError::UnknownMessage { event: event.to_owned(), known })
+    }
+
+    /// What there is in place of a name `component.own` that there is not: names of the component, or the components.
+    fn known(&self, name: &str, what: &str, own: impl Fn(&Part) -> Vec<String>) -> String {
+        let quoted = |names: Vec<String>| {
+            let names = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>();
+            if names.is_empty() { format!("no {what}s") } else { names.join(", ") }
+        };
+        let is_of =
+            |part: &&Part| name.strip_prefix(&*part.name).is_some_and(|own| own.starts_with('.'));
+        match self.parts.iter().find(is_of) {
+            Some(part) => format!("`{}` has {}", part.name, quoted(own(part))),
+            None => {
+                let parts = self.parts.iter().map(|part| part.name.clone()).collect();
+                format!("write `component.{what}`, of a component among {}", quoted(parts))
+            }
+        }
+    }
+
+    fn unknown_variable(&self, variable: &str) -> CompositionError {
+        let known = self.known(variable, "coordinate", |part| {
+            let coordinates = part.blueprint.coordinates.iter().map(|own| (*own).to_owned());
+            coordinates.chain(part.signals.iter().map(|(own, _)| own.clone())).collect()
+        });
+        CompositionError::UnknownVariable { variable: variable.to_owned(), known }
+    }
+
+    /// Why nothing is connected to an input that is no coordinate.
+    fn no_input(&self, output: &str, input: &str) -> CompositionError {
+        if self.full_signals().iter().any(|(signal, _)| signal == input) {
+            let (output, input) = (output.to_owned(), input.to_owned());
+            let reason = "it is a signal, and only coordinates can be inputs";
+            return CompositionError::Connection { output, input, reason };
+        }
+        self.unknown_variable(input)
     }
 
     /// A coordinate that a channel carries is read in the jump of an arrival alone.
@@ -148,14 +199,12 @@ impl CompositionBuilder {
     /// input.
     pub(super) fn sources(&self) -> Result<Vec<Option<usize>>, CompositionError> {
         let names = self.full_names();
-        let find = |variable: &String| {
-            let unknown = || CompositionError::UnknownVariable { variable: variable.clone() };
-            names.iter().position(|name| name == variable).ok_or_else(unknown)
-        };
+        let find = |variable: &String| names.iter().position(|name| name == variable);
         let mut sources = vec![None; names.len()];
         let mut read = vec![false; names.len()];
         for (output, input) in &self.connections {
-            let (from, to) = (find(output)?, find(input)?);
+            let from = find(output).ok_or_else(|| self.unknown_variable(output))?;
+            let to = find(input).ok_or_else(|| self.no_input(output, input))?;
             let reason = if from == to {
                 Some("a coordinate cannot read itself")
             } else if sources[to].is_some() {
@@ -221,7 +270,7 @@ impl CompositionBuilder {
         for (output, input) in wires {
             let owner = self.parts.iter().find_map(|part| Some((part, part.own_name(input)?)));
             let Some((part, own)) = owner else {
-                return Err(CompositionError::UnknownVariable { variable: input.clone() });
+                return Err(self.no_input(output, input));
             };
             let ends = || wires.iter().chain(&self.connections);
             let reason = if ends().filter(|(_, other)| other == input).count() > 1 {
@@ -418,6 +467,13 @@ impl Part {
     fn always_takes(&self, event: &str) -> bool {
         let is_free = |leaving: &Leaving| *leaving.guard.predicate() == always();
         self.event(event).is_none() || self.location_without(event, is_free).is_none()
+    }
+
+    /// Whether a transition with an event of this name can be due.
+    fn forces(&self, event: &str) -> bool {
+        let number = self.event(event);
+        let mut leaving = self.blueprint.modes.iter().flat_map(|mode| &mode.leaving);
+        leaving.any(|leaving| Some(leaving.event) == number && leaving.urgency.is_forced())
     }
 
     /// A location that is ever entered and has no such transition with an event.

@@ -73,10 +73,12 @@ pub enum CompositionError {
     #[error("no component has been added yet: call `at_accumulation` after `add`")]
     NoComponent,
     /// A connection begins or ends at a variable that does not exist.
-    #[error("no component has the variable `{variable}`: write `component.coordinate`")]
+    #[error("no component has the variable `{variable}`: {known}")]
     UnknownVariable {
         /// The variable.
         variable: String,
+        /// What there is.
+        known: String,
     },
     /// An input is connected twice, or reads something that is an input itself.
     #[error("input `{input}` cannot be connected to `{output}`: {reason}")]
@@ -130,10 +132,12 @@ pub enum CompositionError {
         location: &'static str,
     },
     /// A channel begins or ends at an event that does not exist.
-    #[error("no component has the event `{event}`: write `component.event`")]
+    #[error("no component has the event `{event}`: {known}")]
     UnknownMessage {
         /// The event.
         event: String,
+        /// What there is.
+        known: String,
     },
     /// Two channels end at one event.
     #[error("`{event}` is the end of two channels: give the receiver an event for each sender")]
@@ -159,8 +163,8 @@ pub enum CompositionError {
     Channel {
         /// Its name.
         channel: String,
-        /// What stands against it.
-        reason: &'static str,
+        /// What stands against it, and what would be right.
+        reason: String,
     },
     /// A component slides along a surface that depends on what it only reads.
     #[error(

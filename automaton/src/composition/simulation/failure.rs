@@ -33,6 +33,9 @@ pub enum SimulationError {
     /// A tolerance or the resolution makes no sense.
     #[error("the settings cannot be used: {0}")]
     Settings(String),
+    /// An observer cannot see such a run.
+    #[error("the run cannot be observed: {0}")]
+    Observer(String),
 }
 
 /// What keeps a run from going on.

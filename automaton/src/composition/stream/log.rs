@@ -14,7 +14,22 @@ struct Grid {
 
 impl Grid {
     fn every(period: f64) -> Self {
-        Grid { period: if period > 0.0 { period } else { f64::INFINITY }, next: 0 }
+        Grid { period, next: 0 }
+    }
+
+    /// Whether it advances up to a horizon.
+    fn check(&self, horizon: f64) -> Result<(), String> {
+        let Grid { period, .. } = self;
+        if period.is_nan() || *period <= 0.0 {
+            return Err(format!("the period of samples is {period} s: it has to be above 0, or ∞"));
+        }
+        if horizon > 0.0 && horizon.is_finite() && horizon + period == horizon {
+            return Err(format!(
+                "the period of samples is {period:e} s, which numbers near the horizon, {horizon} s, do not resolve: \
+                 choose a longer one"
+            ));
+        }
+        Ok(())
     }
 
     /// The next of them, if it is not after `until`.
@@ -46,6 +61,10 @@ impl Samples {
 }
 
 impl RunObserver for Samples {
+    fn begins(&mut self, _composition: &Composition, horizon: f64) -> Result<(), String> {
+        self.grid.check(horizon)
+    }
+
     fn flows(&mut self, flow: &Flowing<'_>) {
         while let Some(t) = self.grid.up_to(flow.until) {
             self.rows.push((t, flow.values_at(t)));
@@ -61,20 +80,21 @@ pub struct CsvLog<W> {
     writer: W,
     /// The variables and signals that are written, if they are chosen.
     chosen: Option<Vec<String>>,
-    /// Their formulas, once there is a header.
+    /// Their formulas, once a run has begun.
     columns: Option<Vec<Program>>,
     /// The first that failed.
     fault: Option<io::Error>,
 }
 
 impl<W: Write> CsvLog<W> {
-    /// With a row every `period` seconds, besides jumps; with an infinite period for jumps alone. Numbers
+    /// With a row every `period` > 0 seconds, besides jumps; with an infinite period for jumps alone. Numbers
     /// are written one by one: hand in a buffered writer.
     pub fn every(period: f64, writer: W) -> Self {
         CsvLog { grid: Grid::every(period), writer, chosen: None, columns: None, fault: None }
     }
 
-    /// Writes these variables and signals alone, in this order, after the four columns that every row has.
+    /// Writes these variables and signals alone, in this order, after the four columns that every row has. A run does not
+    /// begin if the composition lacks one of them.
     #[must_use]
     pub fn columns(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
         self.chosen = Some(names.into_iter().map(Into::into).collect());
@@ -85,7 +105,7 @@ impl<W: Write> CsvLog<W> {
     ///
     /// # Errors
     ///
-    /// The first error of the writer, or a chosen column that the composition does not have, with those that it has.
+    /// The first error of the writer.
     pub fn finish(mut self) -> io::Result<W> {
         match self.fault.take() {
             Some(fault) => Err(fault),
@@ -93,28 +113,34 @@ impl<W: Write> CsvLog<W> {
         }
     }
 
-    fn begin(&mut self, composition: &Composition) -> io::Result<()> {
-        if self.columns.is_some() {
-            return Ok(());
-        }
+    /// The names of the columns, and their formulas.
+    fn chosen_of(&self, composition: &Composition) -> Result<(Vec<String>, Vec<Program>), String> {
         let variables = composition.variables();
         let signals = composition.signals().map(|(name, formula)| (name, formula.clone()));
         let known: Vec<(&str, Expression)> =
             variables.iter().map(|name| (&**name, variable(name))).chain(signals).collect();
-        let names: Vec<&str> = match &self.chosen {
-            Some(chosen) => chosen.iter().map(String::as_str).collect(),
-            None => known.iter().map(|(name, _)| *name).collect(),
+        let names: Vec<String> = match &self.chosen {
+            Some(chosen) => chosen.clone(),
+            None => known.iter().map(|(name, _)| (*name).to_owned()).collect(),
         };
-        let program = |name: &&str| match known.iter().find(|(known, _)| known == name) {
-            Some((_, formula)) => formula.compile(variables).map_err(io::Error::other),
-            None => {
-                let known: Vec<String> =
-                    known.iter().map(|(name, _)| format!("`{name}`")).collect();
-                let known = known.join(", ");
-                Err(io::Error::other(format!("there is no column `{name}`: there are {known}")))
-            }
+        let program = |name: &String| match known.iter().find(|(known, _)| known == name) {
+            Some((_, formula)) => formula.compile(variables).map_err(|fault| fault.to_string()),
+            None => Err(match composition.source_of(name) {
+                Some(source) => {
+                    format!("`{name}` is an input: its values are in the column `{source}`")
+                }
+                None => {
+                    let known = known.iter().map(|(name, _)| format!("`{name}`"));
+                    let known = known.collect::<Vec<_>>().join(", ");
+                    format!("there is no column `{name}`: there are {known}")
+                }
+            }),
         };
-        self.columns = Some(names.iter().map(program).collect::<io::Result<_>>()?);
+        let formulas = names.iter().map(program).collect::<Result<_, _>>()?;
+        Ok((names, formulas))
+    }
+
+    fn header(&mut self, names: &[String]) -> io::Result<()> {
         write!(self.writer, "t,j,component,event")?;
         for name in names {
             write!(self.writer, ",{}", quoted(name))?;
@@ -131,7 +157,6 @@ impl<W: Write> CsvLog<W> {
     }
 
     fn flow(&mut self, flow: &Flowing<'_>) -> io::Result<()> {
-        self.begin(flow.composition())?;
         while let Some(t) = self.grid.up_to(flow.until) {
             self.row(t, flow.from.j, [""; 2], &flow.values_at(t))?;
         }
@@ -139,7 +164,6 @@ impl<W: Write> CsvLog<W> {
     }
 
     fn jump(&mut self, jump: &Jumping<'_>) -> io::Result<()> {
-        self.begin(jump.composition())?;
         let components = jump.components().collect::<Vec<_>>().join("; ");
         self.row(jump.at.t, jump.at.j, [""; 2], jump.before)?;
         let after = jump.at.after_jump();
@@ -155,6 +179,16 @@ impl<W: Write> CsvLog<W> {
 }
 
 impl<W: Write> RunObserver for CsvLog<W> {
+    fn begins(&mut self, composition: &Composition, horizon: f64) -> Result<(), String> {
+        self.grid.check(horizon)?;
+        if self.columns.is_none() {
+            let (names, formulas) = self.chosen_of(composition)?;
+            self.columns = Some(formulas);
+            self.attempt(|log| log.header(&names));
+        }
+        Ok(())
+    }
+
     fn flows(&mut self, flow: &Flowing<'_>) {
         self.attempt(|log| log.flow(flow));
     }
