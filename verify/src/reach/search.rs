@@ -92,7 +92,7 @@ impl Default for Effort {
 }
 
 /// How many jumps a run has at most; it counts up to there.
-const JUMPS: u64 = 100_000;
+const JUMPS: u64 = 10_000;
 /// How many bytes a run takes at most; it counts up to there.
 const MEMORY: u64 = 1 << 26;
 
