@@ -12,6 +12,7 @@ use super::group::Group;
 use super::hold::Hold;
 use super::linear::LinearPart;
 use super::{Component, Composition};
+use crate::moment::Moment;
 
 /// The most moving variables for which the matrix exponential is cheaper than an integrator.
 const LARGEST_LINEAR: usize = 16;
@@ -29,6 +30,32 @@ pub(super) enum Row {
     Solved,
 }
 
+/// A variable that moves along a line, to twice the precision of a number.
+#[derive(Clone, Copy)]
+pub(super) struct Line {
+    pub(super) start: Moment,
+    /// Per second.
+    pub(super) rate: f64,
+}
+
+/// The part of a sum below which its rest is rounding of the sum.
+const ROUNDING: f64 = f64::EPSILON * f64::EPSILON * 16.0;
+
+impl Line {
+    /// Where it is `time` after the start. A rest that may be rounding is none, so that a variable that comes to a
+    /// bound is exactly there.
+    pub(super) fn at(self, time: Moment) -> Moment {
+        let end = self.start + Moment::from(self.rate) * time;
+        let size = self.start.seconds().abs() + end.seconds().abs();
+        if end.rest().abs() > ROUNDING * size { end } else { Moment::from(end.seconds()) }
+    }
+
+    /// The number nearest to where it begins, and its rate.
+    fn rounded(self) -> (f64, f64) {
+        (self.start.seconds(), self.rate)
+    }
+}
+
 /// The flow of a group in its locations, from a state on.
 pub(super) struct Field<'a> {
     /// Those that neither move along lines alone nor solve their flow themselves, each with its mode.
@@ -39,6 +66,8 @@ pub(super) struct Field<'a> {
     /// By variable of the group.
     pub(super) rows: Vec<Row>,
     pub(super) start: Vec<f64>,
+    /// The start to twice the precision.
+    exact_start: Vec<Moment>,
     /// See [`integrated`](Self::integrated).
     integrated: OnceCell<Box<[usize]>>,
     /// A state of all variables and their rates, where not all are integrated.
@@ -70,7 +99,7 @@ impl<'a> Field<'a> {
         composition: &'a Composition,
         group: &Group,
         locations: &[usize],
-        start: Vec<f64>,
+        start: Vec<Moment>,
     ) -> Self {
         let (mut moving, mut solved) = (Vec::new(), Vec::new());
         let mut rows = vec![Row::Line(0.0); start.len()];
@@ -112,7 +141,8 @@ impl<'a> Field<'a> {
             solved,
             whole,
             rows,
-            start,
+            start: start.iter().copied().map(Moment::seconds).collect(),
+            exact_start: start,
             hold,
             integrated: OnceCell::new(),
             completed: RefCell::default(),
@@ -358,7 +388,8 @@ impl<'a> Field<'a> {
             |number: usize| self.hold.as_ref().is_some_and(|hold| hold.searches(number));
         let known = self.moving.iter().enumerate().filter(|&(number, _)| !is_searched(number));
         let kinks = known.flat_map(|(_, (component, mode))| {
-            let motion = |coordinate: usize| self.line(component.places[coordinate]);
+            let motion =
+                |coordinate: usize| self.line(component.places[coordinate]).map(Line::rounded);
             let kinks = mode.formulas().iter().flat_map(|rate| &rate.kinks);
             kinks.filter_map(move |kinks| kinks.next(settled, &motion))
         });
@@ -368,15 +399,18 @@ impl<'a> Field<'a> {
     /// Holds the sides of kinks that hold at a time, in the state there: the first formula that is on another side
     /// than before.
     pub(super) fn choose_sides(&self, time: f64, state: &[f64]) -> Option<&'a Expression> {
-        self.hold.as_ref()?.choose(time, state, &|place| self.line(place))
+        self.hold.as_ref()?.choose(time, state, &|place| self.line(place).map(Line::rounded))
     }
 
-    /// Where a variable begins and at what rate it moves, if it moves along a line.
-    fn line(&self, place: usize) -> Option<(f64, f64)> {
-        match self.rows.get(place)? {
-            Row::Line(rate) => Some((self.start[place], *rate)),
-            Row::Curved | Row::Solved => None,
-        }
+    /// How a variable moves, if it moves along a line.
+    pub(super) fn line(&self, place: usize) -> Option<Line> {
+        let Row::Line(rate) = *self.rows.get(place)? else { return None };
+        Some(Line { start: self.exact_start[place], rate })
+    }
+
+    /// The variables that move along lines, by their place.
+    pub(super) fn lines(&self) -> impl Iterator<Item = (usize, Line)> {
+        (0..self.rows.len()).filter_map(|place| Some((place, self.line(place)?)))
     }
 
     /// Rates that could grow without bound, with where their variables are.
@@ -439,7 +473,7 @@ impl Composition {
     /// or a component that solves its flow itself.
     pub(super) fn mover(&self, locations: &[usize], values: &[f64]) -> Option<String> {
         self.groups.iter().find_map(|group| {
-            let start: Vec<f64> = group.slots.iter().map(|&slot| values[slot]).collect();
+            let start = group.slots.iter().map(|&slot| values[slot].into()).collect();
             let field = Field::of(self, group, locations, start);
             let moving = field.first_rates().iter().position(|rate| *rate != 0.0);
             let variable = moving.map(|place| self.variables[group.slots[place]].clone());
@@ -502,7 +536,7 @@ pub(super) mod tests {
 
     /// Its flow from a state on.
     pub(in crate::composition) fn field(plane: &Composition, start: [f64; 2]) -> Field<'_> {
-        Field::of(plane, &plane.groups[0], &[0], start.to_vec())
+        Field::of(plane, &plane.groups[0], &[0], start.map(Moment::from).to_vec())
     }
 
     /// x and y as polynomials in time, without errors.
@@ -575,7 +609,7 @@ pub(super) mod tests {
             .expect("it is sound");
         let composition = Composition::builder().add("decays", &automaton).build();
         let composition = composition.expect("it is sound");
-        let start = composition.initial.clone();
+        let start = composition.initial.iter().copied().map(Moment::from).collect();
         let field = Field::of(&composition, &composition.groups[0], &[0], start);
         let part = field.linear().expect("its numbers are finite");
         part.map(|part| part.variables.len())

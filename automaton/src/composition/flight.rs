@@ -6,7 +6,7 @@ mod search;
 
 use pleach_continuous::flow::{Curve, Doubt, Piece};
 
-use super::field::{Field, Row};
+use super::field::{Field, Line};
 use super::group::Group;
 use super::jumps::Standing;
 use super::linear::LinearFlows;
@@ -31,6 +31,8 @@ pub(super) struct Flight {
     pub(super) pieces: Vec<Piece>,
     /// The state at the end, by variable of the group.
     pub(super) landing: Vec<f64>,
+    /// The variables that move along lines, by their place in the group.
+    pub(super) lines: Box<[(usize, Line)]>,
     /// Where it cannot be said whether something happens.
     pub(super) doubts: Vec<Doubt>,
     /// Where its solution touches a jump of its rates, for all that is known.
@@ -54,7 +56,7 @@ pub(super) struct Plan<'a> {
     /// When it begins.
     pub(super) since: Moment,
     /// The state there, by variable of the group.
-    pub(super) start: Vec<f64>,
+    pub(super) start: Vec<Moment>,
     /// How long it takes to the horizon, in seconds.
     pub(super) horizon: f64,
     /// How long it may take, in seconds: a little more, for what happens at the number nearest to the horizon.
@@ -89,6 +91,7 @@ impl Plan<'_> {
             duration,
             pieces: Vec::new(),
             landing: field.start.clone(),
+            lines: field.lines().collect(),
             doubts: Vec::new(),
             grazes: Vec::new(),
             unknowns: Vec::new(),
@@ -143,23 +146,28 @@ impl Flight {
         if let Some(piece) = self.pieces.get(number) {
             piece.state_at(time, &mut state);
         }
+        for (place, line) in &self.lines {
+            state[*place] = line.at(Moment::from(time)).seconds();
+        }
         state
     }
 
     /// The flight for `duration` seconds in which lines go on and everything else rests.
     pub(super) fn of_lines(since: Moment, duration: f64, field: &Field<'_>) -> Flight {
         let mut piece = Piece::new(0.0, duration, 0.0, 1.0);
-        for (first, row) in field.start.iter().zip(&field.rows) {
-            let rate = if let Row::Line(rate) = row { *rate } else { 0.0 };
-            piece.push([*first, rate], 0.0);
-        }
         let mut landing = field.start.clone();
-        piece.state_at(duration, &mut landing);
+        let lasting = Moment::from(duration);
+        for (place, first) in field.start.iter().enumerate() {
+            let line = field.line(place);
+            piece.push([*first, line.map_or(0.0, |line| line.rate)], 0.0);
+            landing[place] = line.map_or(*first, |line| line.at(lasting).seconds());
+        }
         Flight {
             since,
-            duration: Moment::from(duration),
+            duration: lasting,
             pieces: vec![piece],
             landing,
+            lines: field.lines().collect(),
             doubts: Vec::new(),
             grazes: Vec::new(),
             unknowns: Vec::new(),
@@ -202,6 +210,7 @@ mod tests {
             duration: Moment::from(3.0),
             pieces: vec![piece(0.0, 1.0, [0.0, 1.0]), piece(1.0, 3.0, [-1.0, 2.0])],
             landing: vec![10.0],
+            lines: Box::default(),
             doubts: vec![doubt(0.25, 0.5), doubt(2.0, 3.0)],
             grazes: vec![doubt(0.5, 2.5)],
             unknowns: Vec::new(),

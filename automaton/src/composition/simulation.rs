@@ -62,6 +62,8 @@ pub struct Simulation<'a> {
     locations: Vec<usize>,
     /// By slot: those of a group are what they were when it landed or jumped last.
     values: Vec<f64>,
+    /// By slot: what the number of a variable that has moved along a line leaves of it.
+    rests: Vec<f64>,
     groups: Vec<GroupState>,
     /// The groups in flight, by the end of their flights.
     queue: BTreeSet<Due>,
@@ -160,6 +162,7 @@ impl<'a> Simulation<'a> {
             jumps: 0,
             locations: initial.collect(),
             values: composition.initial.clone(),
+            rests: vec![0.0; composition.initial.len()],
             groups: (0..composition.groups.len()).map(group).collect(),
             queue: BTreeSet::new(),
             awake: (0..composition.groups.len()).collect(),

@@ -8,7 +8,7 @@ use pleach_continuous::flow::{
 use pleach_guards::{Enclosure, Expression, Interval, Tracker};
 
 use super::Component;
-use super::field::{Field, Row};
+use super::field::{Field, Line, Row};
 use super::halving::middle;
 use super::hold::{Hold, Unclear};
 use super::linear::LinearPart;
@@ -130,6 +130,11 @@ impl<'a> Solver<'a> {
         &self.field.start
     }
 
+    /// The variables that move along lines, by their place.
+    pub(super) fn lines(&self) -> Box<[(usize, Line)]> {
+        self.field.lines().collect()
+    }
+
     /// How far the flow is solved.
     pub(super) fn reached(&self) -> f64 {
         self.reached
@@ -189,8 +194,8 @@ impl<'a> Solver<'a> {
             match (*row, piece) {
                 // Over infinite rates nothing is exact.
                 (Row::Line(0.0), _) | (Row::Curved | Row::Solved, None) => {}
-                (Row::Line(rate), _) => {
-                    *value = (Moment::from(*value) + Moment::from(rate) * time).seconds();
+                (Row::Line(_), _) => {
+                    *value = field.line(place).map_or(*value, |line| line.at(time).seconds());
                 }
                 (Row::Curved | Row::Solved, Some(piece)) => *value = piece.value(place, at),
             }

@@ -4,7 +4,7 @@ use pleach_continuous::flow::{Curve, Piece, Watch};
 use pleach_guards::{Affine, Course, Enclosure, Tracked, Tracker, Verdict};
 
 use super::blueprint::{Condition, Leaving};
-use super::field::{Field, Row};
+use super::field::Field;
 use super::group::Group;
 use super::jumps::Standing;
 use super::settings::Policy;
@@ -387,9 +387,9 @@ impl Knowledge {
         let mut slope = Moment::default();
         for &(variable, coefficient) in &form.coefficients {
             let place = places[variable];
-            let Row::Line(rate) = field.rows[place] else { return Knowledge::Nothing };
-            margin = margin + Moment::product(coefficient, field.start[place]);
-            slope = slope + Moment::product(coefficient, rate);
+            let Some(line) = field.line(place) else { return Knowledge::Nothing };
+            margin = margin + Moment::from(coefficient) * line.start;
+            slope = slope + Moment::product(coefficient, line.rate);
         }
         // Slack is for a start on the wrong side; elsewhere it would only put off the instant.
         let slack = if margin > zero { 0.0 } else { slack };

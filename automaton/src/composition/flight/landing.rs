@@ -47,6 +47,7 @@ impl Search<'_, '_> {
         let duration = lasting;
         let unknowns = self.solver.unknowns();
         let grazes = self.solver.grazes(duration.seconds());
+        let lines = self.solver.lines();
         let pieces = self.solver.into_pieces(duration.seconds());
         Ok(Flight {
             unknowns,
@@ -54,6 +55,7 @@ impl Search<'_, '_> {
             duration,
             pieces: pieces.map_err(|reason| failed(reason.into()))?,
             landing,
+            lines,
             doubts: self.doubts,
             grazes,
             must_leave,

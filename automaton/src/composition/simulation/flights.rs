@@ -7,6 +7,7 @@ use pleach_guards::Verdict;
 use super::{Due, Failure, Halt, Simulation};
 use crate::composition::field::Field;
 use crate::composition::flight::{Flight, Plan};
+use crate::composition::group::Group;
 use crate::composition::jumps::Standing;
 use crate::composition::tension::{Conditions, Readiness};
 use crate::composition::{Accumulation, Policy};
@@ -65,7 +66,7 @@ impl<'a> Simulation<'a> {
             policy,
             allowance: self.groups[group].allowance,
             since: self.now,
-            start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
+            start: self.start_of(parts),
             last: self.groups[group].last,
             horizon: left,
             limit: left + f64::EPSILON * self.horizon,
@@ -90,7 +91,10 @@ impl<'a> Simulation<'a> {
         let Some(flight) = self.groups[group].flight.take() else { return Ok(()) };
         let parts = &self.composition.groups[group];
         for (&slot, &value) in parts.slots.iter().zip(&flight.landing) {
-            self.values[slot] = value;
+            (self.values[slot], self.rests[slot]) = (value, 0.0);
+        }
+        for (place, line) in &flight.lines {
+            self.rests[parts.slots[*place]] = line.at(flight.duration).rest();
         }
         let outside = self.outside(group)?;
         self.groups[group].allowance = self.allowance_of(group, outside, &flight.landing)?;
@@ -144,8 +148,12 @@ impl<'a> Simulation<'a> {
     /// The flows of a group in these locations, from the present state on.
     pub(super) fn field(&self, group: usize, locations: &[usize]) -> Field<'a> {
         let parts = &self.composition.groups[group];
-        let start = parts.slots.iter().map(|&slot| self.values[slot]).collect();
-        Field::of(self.composition, parts, locations, start)
+        Field::of(self.composition, parts, locations, self.start_of(parts))
+    }
+
+    /// The present state of a group.
+    fn start_of(&self, group: &Group) -> Vec<Moment> {
+        group.slots.iter().map(|&slot| (self.values[slot], self.rests[slot]).into()).collect()
     }
 
     /// Whether the group is outside an invariant, by however little.

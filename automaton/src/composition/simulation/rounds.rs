@@ -143,7 +143,9 @@ impl Simulation<'_> {
         };
         let standing = Standing::new(self.composition, &self.locations);
         let taken = standing.taken(jump, &self.values, &mut share)?;
-        taken.changes.iter().for_each(|&(slot, value)| self.values[slot] = value);
+        for &(slot, value) in &taken.changes {
+            (self.values[slot], self.rests[slot]) = (value, 0.0);
+        }
         for one in &taken.moves {
             self.locations[one.component] = one.target;
             self.jumped[one.component] = self.round;
