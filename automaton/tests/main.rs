@@ -5,6 +5,7 @@ mod common;
 mod adversity;
 mod bouncing_ball;
 mod building;
+mod clocks;
 mod compile_fail;
 mod coverage;
 mod decisions;
