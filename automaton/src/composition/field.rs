@@ -408,9 +408,11 @@ impl<'a> Field<'a> {
         Some(Line { start: self.exact_start[place], rate })
     }
 
-    /// The variables that move along lines, by their place.
-    pub(super) fn lines(&self) -> impl Iterator<Item = (usize, Line)> {
-        (0..self.rows.len()).filter_map(|place| Some((place, self.line(place)?)))
+    /// The variables that move along lines, by their place, without those that rest.
+    pub(super) fn lines(&self) -> Vec<(usize, Line)> {
+        let moves = |row: &Row| !matches!(row, Row::Line(0.0) | Row::Curved | Row::Solved);
+        let places = (0..self.rows.len()).filter(|&place| moves(&self.rows[place]));
+        places.filter_map(|place| Some((place, self.line(place)?))).collect()
     }
 
     /// Rates that could grow without bound, with where their variables are.

@@ -31,8 +31,8 @@ pub(super) struct Flight {
     pub(super) pieces: Vec<Piece>,
     /// The state at the end, by variable of the group.
     pub(super) landing: Vec<f64>,
-    /// The variables that move along lines, by their place in the group.
-    pub(super) lines: Box<[(usize, Line)]>,
+    /// The variables that move along lines, by their place in the group, without those that rest.
+    pub(super) lines: Vec<(usize, Line)>,
     /// Where it cannot be said whether something happens.
     pub(super) doubts: Vec<Doubt>,
     /// Where its solution touches a jump of its rates, for all that is known.
@@ -91,7 +91,7 @@ impl Plan<'_> {
             duration,
             pieces: Vec::new(),
             landing: field.start.clone(),
-            lines: field.lines().collect(),
+            lines: field.lines(),
             doubts: Vec::new(),
             grazes: Vec::new(),
             unknowns: Vec::new(),
@@ -167,7 +167,7 @@ impl Flight {
             duration: lasting,
             pieces: vec![piece],
             landing,
-            lines: field.lines().collect(),
+            lines: field.lines(),
             doubts: Vec::new(),
             grazes: Vec::new(),
             unknowns: Vec::new(),
@@ -210,7 +210,7 @@ mod tests {
             duration: Moment::from(3.0),
             pieces: vec![piece(0.0, 1.0, [0.0, 1.0]), piece(1.0, 3.0, [-1.0, 2.0])],
             landing: vec![10.0],
-            lines: Box::default(),
+            lines: Vec::new(),
             doubts: vec![doubt(0.25, 0.5), doubt(2.0, 3.0)],
             grazes: vec![doubt(0.5, 2.5)],
             unknowns: Vec::new(),

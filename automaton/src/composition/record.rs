@@ -168,7 +168,7 @@ mod tests {
             duration: Moment::from(2.0),
             pieces: (0..pieces).map(piece).collect(),
             landing: vec![0.0; numbers],
-            lines: Box::default(),
+            lines: Vec::new(),
             doubts: vec![Span { from: 0.25, to: 0.5, why: Uncertainty::Touch }],
             grazes: vec![Span { from: 1.25, to: 1.5, why: Uncertainty::Touch }],
             unknowns: vec![Why::Field],

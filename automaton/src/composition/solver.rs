@@ -130,9 +130,9 @@ impl<'a> Solver<'a> {
         &self.field.start
     }
 
-    /// The variables that move along lines, by their place.
-    pub(super) fn lines(&self) -> Box<[(usize, Line)]> {
-        self.field.lines().collect()
+    /// The variables that move along lines, by their place, without those that rest.
+    pub(super) fn lines(&self) -> Vec<(usize, Line)> {
+        self.field.lines()
     }
 
     /// How far the flow is solved.

@@ -91,7 +91,11 @@ impl<'a> Simulation<'a> {
         let Some(flight) = self.groups[group].flight.take() else { return Ok(()) };
         let parts = &self.composition.groups[group];
         for (&slot, &value) in parts.slots.iter().zip(&flight.landing) {
-            (self.values[slot], self.rests[slot]) = (value, 0.0);
+            // What rests keeps its rest.
+            if self.values[slot] != value {
+                self.rests[slot] = 0.0;
+            }
+            self.values[slot] = value;
         }
         for (place, line) in &flight.lines {
             self.rests[parts.slots[*place]] = line.at(flight.duration).rest();
