@@ -126,6 +126,11 @@ impl Sampling {
     }
 }
 
+/// Whether time advances by this period at a horizon, if that is above 0.
+pub(super) fn advances(horizon: f64, period: f64) -> bool {
+    !(horizon > 0.0 && horizon + period == horizon)
+}
+
 impl Composition {
     /// Whether time advances from one sample to the next, up to a horizon.
     ///
@@ -135,8 +140,7 @@ impl Composition {
     pub(super) fn check_samplings(&self, horizon: f64) -> Result<(), SimulationError> {
         for component in &self.components {
             if let Some((Sampling { period, .. }, _)) = component.sampling
-                && horizon > 0.0
-                && horizon + period == horizon
+                && !advances(horizon, period)
             {
                 let clock = component.name.clone();
                 return Err(SimulationError::Sampling { clock, period, horizon });

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use pleach_guards::{Expression, Program, variable};
 
 use super::{Composition, Flowing, Jumping, RunObserver};
+use crate::composition::sampler::advances;
 
 /// The times 0, `period`, 2 `period`, … that have not come yet.
 struct Grid {
@@ -19,11 +20,11 @@ impl Grid {
 
     /// Whether it advances up to a horizon.
     fn check(&self, horizon: f64) -> Result<(), String> {
-        let Grid { period, .. } = self;
-        if period.is_nan() || *period <= 0.0 {
+        let period = self.period;
+        if period.is_nan() || period <= 0.0 {
             return Err(format!("the period of samples is {period} s: it has to be above 0, or ∞"));
         }
-        if horizon > 0.0 && horizon.is_finite() && horizon + period == horizon {
+        if horizon.is_finite() && !advances(horizon, period) {
             return Err(format!(
                 "the period of samples is {period:e} s, which numbers near the horizon, {horizon} s, do not resolve: \
                  choose a longer one"

@@ -76,8 +76,8 @@ impl Robot {
     /// Where robots that do not take part were heard last, by this robot or by the nodes that it hears.
     pub(super) fn locate_wrecks(&mut self) {
         let silent = self.neighbours.iter().filter(|known| known.is_silent());
-        let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter().copied());
-        let seen = told.chain(silent.map(Neighbour::wreck));
+        let reported = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter().copied());
+        let seen = reported.chain(silent.map(Neighbour::wreck));
         self.membership.locate_wrecks(seen, |robot| self.site.start_of(robot));
     }
 

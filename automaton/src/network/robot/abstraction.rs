@@ -131,10 +131,10 @@ impl Robot {
     /// Whether what the robot would leave out if nothing new came would change nothing. What it leaves
     /// out is not told by its [`account`](Self::account).
     pub fn leaves_out_nothing(&self) -> bool {
-        let (beacon, told) = (self.public_state(), self.outbox.beacon());
+        let (beacon, sent) = (self.public_state(), self.outbox.beacon());
         let [is_processed, is_compared, is_measured] = self.changes.are_derived();
         (!is_processed || self.overlooked().is_none())
-            && (!is_compared || told.is_none_or(|told| *told == beacon))
+            && (!is_compared || sent.is_none_or(|sent| *sent == beacon))
             && (!is_measured || self.facts_stand())
     }
 

@@ -73,13 +73,13 @@ impl Ballot {
         }
     }
 
-    /// Counts one more round; returns whether a wait is over, if news may be under way for so many rounds.
+    /// Counts one more round; returns whether a wait is over, where news takes at most `longest_wait` rounds.
     pub const fn count_round(&mut self, longest_wait: usize) -> bool {
         self.waited_rounds += 1;
         self.waited_rounds == longest_wait + 1 || self.waited_rounds == 2 * longest_wait
     }
 
-    /// Whether the robot has taken part for so many rounds.
+    /// Whether the robot has taken part for this many rounds.
     pub const fn has_waited_for(&self, rounds: usize) -> bool {
         self.waited_rounds >= rounds
     }
@@ -139,7 +139,7 @@ impl Ballot {
         self.election = Some(Arc::new(election));
     }
 
-    /// The robot has taken part for so many rounds.
+    /// The robot has taken part for this many rounds.
     pub const fn has_waited(&mut self, rounds: usize) {
         self.waited_rounds = rounds;
     }

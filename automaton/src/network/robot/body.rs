@@ -67,7 +67,7 @@ impl Body {
         (self.position, self.arrival) = (position, position);
     }
 
-    /// It stands at `position`, and has made no progress for so many control periods.
+    /// It stands at `position`, and has made no progress for this many control periods.
     pub fn stand_at(&mut self, position: Point, still_periods: u32) {
         self.correct(position);
         self.resting_places = VecDeque::from([position]);
@@ -128,7 +128,7 @@ impl Body {
         (self.clock, self.velocity) = (0.0, velocity);
     }
 
-    /// It has made no progress for so many control periods.
+    /// It has made no progress for this many control periods.
     pub fn waits(&mut self, still_periods: u32) {
         self.still_periods = still_periods;
     }

@@ -75,7 +75,7 @@ impl DutyCell {
         self.posts_made
     }
 
-    /// The robot has made a post, or as many as one that has begun again in this control period.
+    /// The robot has made further posts in this control period.
     pub const fn make_posts(&mut self, posts: u32) {
         self.posts_made += posts;
     }

@@ -60,12 +60,7 @@ impl Default for Exchanges {
 }
 
 impl Exchanges {
-    /// Those of a robot that may have made so many offers before it began.
-    pub fn after(forgotten_offers: u32) -> Self {
-        Exchanges { forgotten_offers, ..Exchanges::default() }
-    }
-
-    /// The robot may have made so many offers before it began.
+    /// The robot may have made this many offers before it began.
     pub const fn forget_offers(&mut self, forgotten_offers: u32) {
         self.forgotten_offers = forgotten_offers;
     }
@@ -190,7 +185,8 @@ mod tests {
 
     #[test]
     fn a_partner_is_looked_for_until_it_is_asked() {
-        let mut exchanges = Exchanges::after(2);
+        let mut exchanges = Exchanges::default();
+        exchanges.forget_offers(2);
         exchanges.choose_partner(Some(4));
         exchanges.carry_out(ExchangeEffect::Answered(5, 7), THEN);
         assert_eq!((exchanges.partner(), exchanges.answered(5)), (Some(4), Some(7)));

@@ -19,8 +19,11 @@ impl Robot {
     /// Sends its proposed move, if it has one, until all that rely on it consent.
     pub(super) fn tell_proposal(&mut self, outputs: &mut NodeOutputs) {
         if self.negotiation.has_proposal() {
-            let (reliant, witness) = (self.reliant(), self.witness());
-            self.negotiation.send(self.schedule.period(), &reliant, witness, outputs);
+            let reliant = self.reliant();
+            if self.negotiation.has_to_send(&reliant) {
+                let witness = if reliant.is_empty() { self.witness() } else { None };
+                self.negotiation.send(self.schedule.period(), witness, outputs);
+            }
         }
     }
 
@@ -52,8 +55,8 @@ impl Robot {
         })
     }
 
-    /// Whether the robot could be harmed by a move of this node: it sends to it, or may have to be
-    /// told that it still may, or is attached to it in the tree.
+    /// Whether the robot could be harmed by a move of this node: it sends to it, or may have to
+    /// receive that it still may, or is attached to it in the tree.
     fn relies_on(&self, node: NodeId) -> bool {
         self.reservation.has_asked(node) || self.tree_parent() == Some(node)
     }
@@ -64,14 +67,12 @@ impl Robot {
         self.reservation.senders().chain(self.tree_children().map(Neighbour::id)).collect()
     }
 
-    /// The node that it asks to be the witness of its move, where nobody relies on it: its parent if that is
-    /// heard. While it makes no progress, the nodes that it hears take turns.
+    /// The node that it requests as the witness of its move, where nobody relies on it: its parent if that has been
+    /// received in this control period. While it makes no progress, all nodes that have take turns.
     fn witness(&self) -> Option<NodeId> {
-        if !self.reliant().is_empty() {
-            return None;
-        }
-        let heard = self.neighbours.iter().filter(|known| known.heard_in == self.schedule.period());
-        let mut candidates: Vec<NodeId> = heard.map(Neighbour::id).collect();
+        let period = self.schedule.period();
+        let received = self.neighbours.iter().filter(|known| known.heard_in == period);
+        let mut candidates: Vec<NodeId> = received.map(Neighbour::id).collect();
         candidates.sort_by_key(|&node| Some(node) != self.tree.parent()); // the parent first
         let turn = self.body.still_periods() as usize % candidates.len().max(1);
         candidates.get(turn).copied()

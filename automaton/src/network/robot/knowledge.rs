@@ -179,7 +179,7 @@ impl Knowledge {
         self.longest_wait
     }
 
-    /// News may be under way for so many rounds.
+    /// News may be under way for this many rounds.
     pub const fn wait_for(&mut self, rounds: usize) {
         self.longest_wait = rounds;
     }

@@ -11,7 +11,7 @@ use pleach_discrete::network::NodeId;
 use crate::network::access_point::PATIENCE;
 use crate::network::roll::{Roll, Sightings, Wreck};
 
-/// A roll that is called so many control periods after a robot was received last says whether it takes part: the
+/// A roll that is called this many control periods after a robot was received last says whether it takes part: the
 /// first access point misses it after its patience, and reports of it may be as old when they arrive.
 const TOLD_AFTER: u32 = 2 * PATIENCE;
 
@@ -82,8 +82,8 @@ impl Membership {
         self.joined_in > 0
     }
 
-    /// Whether all are known that do not take part: a robot that has begun later than others is told of them
-    /// by a roll that is called long enough afterwards.
+    /// Whether all are known that do not take part: a robot that has begun later than others receives their
+    /// names with a roll that is called long enough afterwards.
     pub const fn knows_who_is_absent(&self) -> bool {
         !self.is_late_comer() || self.joined_in.saturating_add(TOLD_AFTER) <= self.roll.called
     }

@@ -202,7 +202,7 @@ impl Robot {
         let (site, place) = (Arc::clone(&self.site), self.body.position());
         let fresh = Robot::new(self.id, place, self.routing.rate(), site);
         let known = std::mem::replace(self, fresh);
-        self.exchanges = Exchanges::after(known.offers().offers_made());
+        self.exchanges.forget_offers(known.offers().offers_made());
         let period = known.schedule.period();
         self.schedule = known.schedule.begun_again();
         self.body = Body::at(known.body.position(), known.body.clock());
@@ -354,7 +354,7 @@ impl Robot {
         if !self.changes.are_news() && !is_due && self.caches() {
             #[cfg(feature = "abstraction")]
             debug_assert_eq!(
-                self.is_looked_at().then(|| self.overlooked()).flatten(),
+                context!(self).verifies().then(|| self.overlooked()).flatten(),
                 None,
                 "robot {} overlooks something",
                 self.id

@@ -88,19 +88,15 @@ impl Negotiation {
         (-margin).max(0.0)
     }
 
-    /// Sends the proposed move, if there is one, until all that rely on the robot consent; where nobody does, with the
-    /// witness that it requests.
-    pub fn send(
-        &mut self,
-        period: u32,
-        reliant: &[NodeId],
-        witness: Option<NodeId>,
-        outputs: &mut NodeOutputs,
-    ) {
-        if let Some(segment) = self.proposal
-            && (self.sent != self.proposal || !self.has_consents_of(reliant))
-        {
-            self.sent = self.proposal;
+    /// Whether the proposed move has to be sent: until all that rely on the robot consent, and whenever it changes.
+    pub fn has_to_send(&self, reliant: &[NodeId]) -> bool {
+        self.sent != self.proposal || !self.has_consents_of(reliant)
+    }
+
+    /// Sends the proposed move, if there is one, with the witness that it needs where nobody relies on the robot.
+    pub fn send(&mut self, period: u32, witness: Option<NodeId>, outputs: &mut NodeOutputs) {
+        self.sent = self.proposal;
+        if let Some(segment) = self.proposal {
             outputs.broadcast(Message::Proposal { period, segment, witness });
         }
     }
@@ -241,7 +237,9 @@ mod tests {
 
     fn sends(negotiation: &mut Negotiation, reliant: &[NodeId]) -> usize {
         let mut outputs = NodeOutputs::of(0);
-        negotiation.send(NOW, reliant, None, &mut outputs);
+        if negotiation.has_to_send(reliant) {
+            negotiation.send(NOW, None, &mut outputs);
+        }
         outputs.drain_sent().count()
     }
 

@@ -2,10 +2,11 @@
 //! looking at its neighbours, finding and going through its links, choosing shares, and all of these where a control
 //! period is like the one before.
 //!
-//! Skipping is right if the work would change nothing. [`without_caching`](super::super::scenario::ValidScenario::without_caching)
-//! switches it off, and missions are the same to the byte. Builds with debug assertions verify that for guards, facts,
-//! beacons, links and shares, in one control period in [`PERIODS_PER_CHECK`](super::context::PERIODS_PER_CHECK); with the feature `abstraction` also for
-//! messages, which are processed again on a copy. Explorers verify it in every state of a robot, but for shares and for
+//! Skipping is right if the work would change nothing.
+//! [`without_caching`](super::super::scenario::ValidScenario::without_caching) switches it off, and missions are the same
+//! to the byte. Builds with debug assertions verify that for guards, facts, beacons, links and shares, in one control
+//! period in [`PERIODS_PER_CHECK`](super::context::PERIODS_PER_CHECK); with the feature `abstraction` also for messages,
+//! which are processed again on a copy. Explorers verify it in every state of a robot, but for shares and for
 //! periods that are like the one before: to them every period is new.
 
 use super::Robot;
@@ -16,17 +17,12 @@ use crate::network::duty::Duty;
 impl Robot {
     /// Whether it keeps what it has derived.
     pub(super) fn caches(&self) -> bool {
-        self.site.settings.caching
+        context!(self).caches()
     }
 
-    /// Whether what is left out is looked at in this period.
-    pub(super) fn is_looked_at(&self) -> bool {
-        context!(self).verifies()
-    }
-
-    /// Whether something that would change nothing is left out, as far as it is looked at.
+    /// Whether work that is left out would change nothing, where that is verified.
     pub(super) fn may_skip(&self, changes_nothing: impl FnOnce(&Self) -> bool) -> bool {
-        !self.is_looked_at() || changes_nothing(self)
+        context!(self).may_skip(|| changes_nothing(self))
     }
 
     /// Whether a control period that begins or ends is like any other to the robot, so that what it has worked out

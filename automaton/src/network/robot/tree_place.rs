@@ -113,7 +113,7 @@ impl TreePlace {
 
     /// The robot has got another duty: it looks for a parent of its new post.
     pub const fn begin_duty(&mut self) {
-        (self.desired_parent, self.reattaches_to) = (None, None);
+        self.desire_nothing();
         self.unused_periods = 0;
     }
 

@@ -1,18 +1,18 @@
 //! Flows in circles: robots find out that their leases wait for each other.
 //!
-//! A grant lasts no longer than the flows of the receiver that carry it ([`reservation`](super)). In a circle of robots that send
-//! to each other, each lease therefore waits for the next one to be renewed, and all of them end at once, with all that
-//! flows there. Such a wait is found by the edge chasing of Chandy, Misra and Haas (1983,
+//! A grant lasts no longer than the flows of the receiver that carry it ([`reservation`](super)). In a circle of robots
+//! that send to each other, each lease therefore waits for the next one to be renewed, and all of them end at once, with
+//! all that flows there. Such a wait is found by the edge chasing of Chandy, Misra and Haas (1983,
 //! [doi:10.1145/357360.357365](https://doi.org/10.1145/357360.357365)). A robot one of whose leases is about to end sends
-//! a [`Probe`] along that flow, and a robot that hears it passes it on along such a flow of its own. A probe that returns
-//! to its sender has gone round a circle. The least flow on its way is what goes round and reaches no access point: each
-//! robot of the circle sets as much aside of what it sends and of what it is sent there, as its own probe tells it.
-//! Probes that follow are about what is left, so that circles with a link in common are found one after another, none
-//! for more than there is.
+//! a [`Probe`] along that flow, and a robot that receives it passes it on along such a flow of its own. A probe that
+//! returns to its sender has gone round a circle. The least flow on its way is what goes round and reaches no access
+//! point: when its own probe returns, each robot of the circle sets that amount aside, of what it sends and of what it is
+//! sent there. Probes that follow are about what is left, so that circles with a link in common are found one after
+//! another, none for more than there is.
 //!
-//! What is not set aside is granted for longer (by [`reservation`](super)). What is set aside ends with the leases of the circle,
-//! at all of its robots in the same control period if each of them has heard its own probe. Whatever probes say, a robot
-//! grants nothing for longer than its own flows carry it.
+//! What is not set aside is granted for longer (by [`reservation`](super)). What is set aside ends with the leases of the
+//! circle, at all of its robots in the same control period if each of them has received its own probe. Whatever probes
+//! report, a robot grants nothing for longer than its own flows carry it.
 
 use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};

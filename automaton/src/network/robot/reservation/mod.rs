@@ -3,15 +3,15 @@
 //! The routing method and its sweeps say which flows would be best. The flows in use are held from one
 //! control period to the next and change on request. A robot asks for the flows of its plan; it raises
 //! F_ij to what the receiver has granted, and grants only what its own flows forward. It lowers F_ij
-//! where the rest still carries what it has granted and its rate, and tells the receiver; or raises one and lowers
-//! another by as much at once. So
+//! where the rest still carries what it has granted and its rate, and informs the receiver; or raises one and lowers
+//! another by the same amount at once. So
 //!
 //! ```text
 //! Σ_j F_ij − Σ_j (granted to j) − r_i ≥ 0
 //! ```
 //!
 //! holds from the first period in which it does, as long as grants are renewed: a message that is lost
-//! leaves flows as they are until a lease ends. A request is answered by a grant, which tells all that is kept for the
+//! leaves flows as they are until a lease ends. A request is answered by a grant, which states all that is kept for the
 //! sender, and what is about to end is renewed by further ones. A new request voids the grants before it, so that late
 //! messages and copies change nothing.
 //!

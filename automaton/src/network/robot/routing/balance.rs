@@ -67,15 +67,15 @@ impl Balance {
         self.inflow = self.inflows.iter().map(|(_, flow)| flow).sum();
     }
 
-    /// c_i with the flows that are known now.
-    pub fn residual_now(&self, links: &Links, context: Context<'_>) -> f64 {
+    /// c_i of the flows that are known now, which are added up.
+    pub fn residual_now(&mut self, links: &Links, context: Context<'_>) -> f64 {
+        self.add_up_inflow();
         links.known_outflow(context) - self.inflow - context.rate
     }
 
     /// All flows are known: eq. (5).
     pub fn settle(&mut self, links: &Links, context: Context<'_>) {
         if std::mem::take(&mut self.is_unsettled) || !context.caches() {
-            self.add_up_inflow();
             self.residual = self.residual_now(links, context);
         }
     }

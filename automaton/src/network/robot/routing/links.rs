@@ -98,7 +98,7 @@ impl Links {
     pub fn to(&self, receivers: &[Receiver], context: Context<'_>) -> Links {
         let settings = &context.site.settings;
         let (aversion, link_model) = (settings.slope_aversion, &context.site.link);
-        let mut found = Links { sent_outflow: self.sent_outflow, ..Links::default() };
+        let mut found = Links::default();
         for &Receiver { node: to, distance, reliability, in_tree, has_flow } in receivers {
             let at_worst = link_model.reliability(distance + 2.0 * settings.errors.stray());
             let is_retiring = at_worst < LEAST_USEFUL_RELIABILITY && !in_tree;

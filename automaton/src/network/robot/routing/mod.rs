@@ -100,7 +100,6 @@ impl Routing {
 
     /// The flows of the period before are known over the links as they are now.
     pub fn begin(&mut self, context: Context<'_>) {
-        self.balance.add_up_inflow();
         let residual = self.balance.residual_now(&self.links, context);
         self.iteration.begin(residual, &self.links, context);
     }
@@ -146,7 +145,6 @@ impl Routing {
 
     /// The dual iteration (14), or that of ADAL.
     pub fn dual_step(&mut self, context: Context<'_>) {
-        self.balance.add_up_inflow();
         let residual = self.balance.residual_now(&self.links, context);
         self.iteration.dual_step(residual, &self.links, context);
     }
