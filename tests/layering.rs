@@ -338,35 +338,47 @@ impl Struct {
     }
 }
 
-/// The most fields of a robot, and of each of its components.
-const MOST_FIELDS_OF_ROBOT: usize = 16;
+/// The most fields of a component.
 const MOST_FIELDS: usize = 16;
 
-/// The components of a robot own their state: whoever adds a rule finds every place that can change it in one module.
-#[test]
-fn components_of_a_robot_have_walls() {
-    let all = sources();
-    let robot: Vec<Source> =
-        all.into_iter().filter(|source| source.path.contains("/network/robot/")).collect();
-    let whole = Struct::find("Robot", &robot).expect("there is a robot");
-    assert!(whole.fields.len() <= MOST_FIELDS_OF_ROBOT, "{} fields", whole.fields.len());
-    let components: Vec<&str> = whole.types().collect();
+/// The components of a node own their state: every place that can change it is in one module.
+fn assert_walls(node: &str, folder: &str, most_fields: usize, least_components: usize) {
+    let folder = format!("automaton/src/network/{folder}/");
+    let is_shared =
+        |path: &str| path.rsplit_once('/').is_some_and(|(it, _)| it == "automaton/src/network");
+    let (own, others): (Vec<Source>, Vec<Source>) =
+        sources().into_iter().partition(|source| source.path.starts_with(&folder));
+    let shared = others.into_iter().filter(|source| is_shared(&source.path));
+    let searched: Vec<Source> = own.into_iter().chain(shared).collect();
+    let whole = Struct::find(node, &searched).expect("there is such a node");
+    assert!(whole.fields.len() <= most_fields, "{node} has {} fields", whole.fields.len());
     let mut offences = Vec::new();
     let mut count = 0;
-    for (name, found) in
-        components.iter().filter_map(|name| Some((name, Struct::find(name, &robot)?)))
-    {
+    let found = |name| Some((name, Struct::find(name, &searched)?));
+    for (name, component) in whole.types().filter(|name| *name != "Site").filter_map(found) {
         count += 1;
-        let open = found.fields.iter().filter(|field| field.starts_with("pub"));
-        offences.extend(open.map(|field| format!("{}: {name} has `{field}`", found.path)));
-        if found.fields.len() > MOST_FIELDS {
-            offences.push(format!("{}: {name} has {} fields", found.path, found.fields.len()));
+        let path = &component.path;
+        let open = component.fields.iter().filter(|field| field.starts_with("pub"));
+        offences.extend(open.map(|field| format!("{path}: {name} has `{field}`")));
+        if component.fields.len() > MOST_FIELDS {
+            offences.push(format!("{path}: {name} has {} fields", component.fields.len()));
         }
-        let sees_robot = robot.iter().filter(|source| source.path == found.path);
-        offences.extend(
-            sees_robot.flat_map(|source| source.lines_with(&["&mut Robot", "self: &Robot"])),
-        );
+        let sees_node = [format!("&mut {node}"), format!("self: &{node}")];
+        let file = searched.iter().filter(|source| source.path == *path);
+        let seen =
+            file.flat_map(|source| source.lines_with(&sees_node.each_ref().map(String::as_str)));
+        offences.extend(seen);
     }
-    assert!(count >= 14, "{count} components");
+    assert!(count >= least_components, "{count} components of {node}");
     assert_none(offences, "fields of components are private, few, and changed by their own module");
+}
+
+#[test]
+fn components_of_a_robot_have_walls() {
+    assert_walls("Robot", "robot", 16, 14);
+}
+
+#[test]
+fn components_of_an_access_point_have_walls() {
+    assert_walls("AccessPoint", "access_point", 12, 8);
 }

@@ -5,10 +5,10 @@ pub type Use = (&'static str, &'static str, &'static str, &'static str);
 
 const TENSION: &str = "automaton/src/composition/tension.rs";
 const ROBOT_ATTACHMENT: &str = "automaton/src/network/robot/attachment.rs";
-const ROBOT_BALLOT: &str = "automaton/src/network/robot/ballot.rs";
+const BALLOT: &str = "automaton/src/network/ballot.rs";
 const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
 const ROBOT_FACTS: &str = "automaton/src/network/robot/facts.rs";
-const ROBOT_KNOWLEDGE: &str = "automaton/src/network/robot/knowledge.rs";
+const NOTICES: &str = "automaton/src/network/notices.rs";
 const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
 const ROBOT_LINEAGE: &str = "automaton/src/network/robot/lineage.rs";
 const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
@@ -67,22 +67,22 @@ pub const USES: &[Use] = &[
     ),
     ("new", AGREEMENT, ROBOT_PATH, "Agreement::new(id)"),
     ("vote", AGREEMENT, ROBOT_PATH, "agreement.vote(place,"),
-    ("arrive", AGREEMENT, ROBOT_BALLOT, "agreement.arrive(place)"),
-    ("give_up", AGREEMENT, ROBOT_BALLOT, "agreement.give_up(place)"),
+    ("arrive", AGREEMENT, BALLOT, "agreement.arrive(place)"),
+    ("give_up", AGREEMENT, BALLOT, "agreement.give_up(place)"),
     ("has_given_up", AGREEMENT, ROBOT_PATH, "agreement.has_given_up(place)"),
-    ("merge", AGREEMENT, ROBOT_BALLOT, "(&mut self.agreement, &beacon.agreement)"),
+    ("merge", AGREEMENT, BALLOT, "(&mut self.agreement, &beacon.agreement)"),
     ("is_settled", AGREEMENT, AGREEMENT, "self.is_settled(places)"),
     ("is_break_point", AGREEMENT, AGREEMENT, "self.is_break_point(place)"),
     ("have_arrived", AGREEMENT, ROBOT_PATH, "agreement.have_arrived(subgroup.places())"),
     ("new", BULLETIN, BULLETIN, "NoticeId::new(0, 0)"),
-    ("next", BULLETIN, ROBOT_KNOWLEDGE, "self.bulletin.next(issuer, Shared::new(notice))"),
-    ("id", BULLETIN, ROBOT_KNOWLEDGE, "self.bulletin.id()"),
+    ("next", BULLETIN, NOTICES, "self.bulletin.next(issuer, Shared::new(notice))"),
+    ("id", BULLETIN, ROBOT, "self.mission.notices().bulletin().id()"),
     ("is_newer_than", BULLETIN, BULLETIN, "heard.id.is_newer_than(self.id)"),
-    ("merge", BULLETIN, ROBOT_KNOWLEDGE, "self.bulletin.merge(&beacon.bulletin)"),
+    ("merge", BULLETIN, NOTICES, "self.bulletin.merge(received)"),
     ("new", ELECTION, ROBOT_LEADER, "Election::new(robot.notice_id())"),
-    ("place", ELECTION, ROBOT_BALLOT, "Arc::make_mut(election).place(robot, bid)"),
-    ("merge", ELECTION, ROBOT_BALLOT, "merge_election(own, heard)"),
-    ("best", ELECTION, ROBOT_BALLOT, "self.election.as_ref()?.best()"),
+    ("place", ELECTION, BALLOT, "Arc::make_mut(election).place(robot, bid)"),
+    ("merge", ELECTION, BALLOT, "merge_election(own, heard)"),
+    ("best", ELECTION, BALLOT, "self.election.as_ref()?.best()"),
     ("is_complete", ELECTION, ROBOT_FACTS, "election.is_complete(roster)"),
     ("new", ID_SET, ELECTION, "tokens: IdSet::new()"),
     ("insert", ID_SET, ELECTION, "self.tokens.insert(robot)"),

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{
-    Agreement, Election, IdSet, Lineage, NodeId, NoticeId, Offer, PostId, Reply, bulletin,
+    Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId, Offer, PostId, Reply, bulletin,
 };
 use serde::{Deserialize, Serialize};
 
@@ -217,8 +217,7 @@ pub struct Branch {
 }
 
 impl Beacon {
-    /// A beacon that tells nothing but who and where its sender is.
-    #[cfg(test)]
+    /// A beacon that reports nothing but who and where its sender is.
     pub(super) fn silent(sender: NodeId, position: Point) -> Self {
         Self {
             sender,
@@ -258,6 +257,12 @@ impl Beacon {
         let heard_in = period.saturating_sub(2);
         let sighting = move |it: &Branch| Wreck::heard(it.robot, it.place, heard_in);
         self.branches.iter().map(sighting)
+    }
+
+    /// Whether the post of the sender is attached to this anchor.
+    pub(super) fn is_attached_to(&self, anchor: Anchor) -> bool {
+        let post = self.duty.as_ref().and_then(Duty::post);
+        post.is_some_and(|post| post.parent == Some(anchor))
     }
 
     /// The task that is serviced from the post of the sender.

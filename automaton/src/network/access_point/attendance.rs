@@ -1,21 +1,16 @@
-//! The automaton of a robot's attendance, and the roll that follows from it.
+//! The automaton of a robot's attendance.
 //!
 //! Robots that are attached to an access point, at whatever distance, are heard of. One that has not
 //! been for some control periods is suspended, and gone when no roll is valid any more that lets it
 //! move. A robot that comes back is readmitted when no roll is valid any more that calls it gone. In the terms of
 //! distributed systems this is a failure detector with leases.
 
-use std::sync::Arc;
-
-use pleach_discrete::network::{ATTENDANCE, Attendance, AttendanceEvent, IdSet, NodeId};
+use pleach_discrete::network::{ATTENDANCE, Attendance, AttendanceEvent};
 use pleach_guards::network::attendance as guards;
 
 use crate::automaton::TransitionError;
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer};
-
-use super::AccessPoint;
-use crate::network::roll::{Absent, Roll};
 
 /// Control periods after which a robot that is not heard of is missed.
 pub(in crate::network) const PATIENCE: u32 = 8;
@@ -67,28 +62,6 @@ pub struct Attendee {
     validity: u32,
 }
 
-/// A task that has been serviced, as an access point knows it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct TaskRecord {
-    /// Control periods since it was heard of as one that is serviced.
-    pub silence: u32,
-    /// Control periods since its service was announced last.
-    pub age: u32,
-}
-
-impl TaskRecord {
-    /// Another control period begins.
-    fn pass_period(&mut self) {
-        self.silence = self.silence.saturating_add(1);
-        self.age = self.age.saturating_add(1);
-    }
-
-    /// Whether it has been serviced for at least this many control periods, and is heard of now.
-    pub(super) fn has_lasted(self, periods: u32) -> bool {
-        self.age >= periods && self.silence == 0
-    }
-}
-
 crate::observed! {
     impl Observed for Attendee as attendee;
     /// What the guards of attendance read.
@@ -138,6 +111,11 @@ impl Attendee {
         }
     }
 
+    /// A robot that is attached to an access point.
+    pub(super) fn attached(validity: u32) -> Self {
+        Attendee { known: true, ..Attendee::new(validity) }
+    }
+
     /// A robot that does not take part by the roll that an access point hears when it begins.
     pub(super) fn absent(standing: Standing, validity: u32) -> Self {
         Attendee {
@@ -179,9 +157,19 @@ impl Attendee {
         self.known && self.standing.location() == Attendance::Present
     }
 
+    /// Where it stands.
+    pub(super) fn location(&self) -> Attendance {
+        self.standing.location()
+    }
+
     /// Whether it does not take part, and may in a while.
     pub(super) fn may_return(&self) -> bool {
         matches!(self.standing.location(), Attendance::Suspended | Attendance::Returning)
+    }
+
+    /// Whether it has ever been attached to an access point, as far as this one knows.
+    pub(super) const fn is_known(&self) -> bool {
+        self.known
     }
 
     /// Whether it is gone.
@@ -198,7 +186,7 @@ impl Attendee {
 
     /// Initialises the robot from the roll that an access point hears first after it has started or restarted. If that
     /// roll is not valid any more, a later one may let the robot move or call it gone: it is suspended.
-    fn recall(&mut self, called: Attendance, is_valid: bool) {
+    pub(super) fn recall(&mut self, called: Attendance, is_valid: bool) {
         let (standing, recalled) = match called {
             Attendance::Gone if is_valid => (Standing::Gone(Gone), false),
             Attendance::Present if is_valid && self.known => return,
@@ -209,137 +197,14 @@ impl Attendee {
     }
 
     /// Another control period begins.
-    fn review(&mut self, automaton: &AttendanceAutomaton) -> Result<(), TransitionError> {
+    pub(super) fn review(
+        &mut self,
+        automaton: &AttendanceAutomaton,
+    ) -> Result<(), TransitionError> {
         self.age = self.age.saturating_add(1);
         self.silence = self.silence.saturating_add(1);
         automaton.step_in_place::<Standing>(self)?;
         Ok(())
-    }
-}
-
-impl AccessPoint {
-    /// Once a control period: who is missed, where that has to be known, and, at the first access point,
-    /// the next roll.
-    pub(super) fn call_roll(&mut self) -> Result<(), TransitionError> {
-        if !self.keeps_attendance() {
-            return Ok(());
-        }
-        let site = Arc::clone(&self.site);
-        self.has_news = true;
-        for attendee in &mut self.attendees {
-            attendee.review(&site.automata.attendance)?;
-        }
-        self.known_tasks.values_mut().for_each(TaskRecord::pass_period);
-        self.note_joiners();
-        if self.is_first() {
-            let absent = self.absent();
-            let is_same = *self.roll.absent == absent;
-            let absent = if is_same { Arc::clone(&self.roll.absent) } else { Arc::new(absent) };
-            self.roll = Roll { called: self.period, absent };
-        }
-        Ok(())
-    }
-
-    /// Robots that have joined take part in the team and on Σ like others, and are missed like these.
-    fn note_joiners(&mut self) {
-        let attending = self.attending();
-        if let Some((_, announcement)) = &self.announced {
-            let has_joined = |&robot: &NodeId| !announcement.roster.contains(robot);
-            self.joiners.extend(attending.iter().filter(has_joined));
-        }
-    }
-
-    /// Attendance is kept from now on, of those that are heard of at present.
-    pub(super) fn begin_attendance(&mut self) {
-        if self.attendees.is_empty() {
-            self.attendees = vec![Attendee::new(self.site.roll_validity()); self.site.robots];
-            for robot in self.roster.iter() {
-                if let Some(attendee) = self.attendees.get_mut(robot) {
-                    attendee.attend();
-                }
-            }
-        }
-    }
-
-    /// Whether robots are not in its roster that may not have begun yet.
-    pub(super) fn awaits_robots(&self) -> bool {
-        let mut attendees = self.attendees.iter().enumerate();
-        attendees.any(|(robot, attendee)| attendee.may_begin() && !self.roster.contains(robot))
-    }
-
-    /// Initialises the attendance of all robots from the roll that this access point hears first after it has started
-    /// or restarted. Robots that are absent in it stay absent. Robots that this access point has not heard itself are
-    /// suspended, because it cannot tell for how long they have been silent.
-    pub(super) fn recall(&mut self, roll: &Roll, period: u32) {
-        let is_valid = roll.is_valid(period, self.site.roll_validity());
-        self.has_news = true;
-        for (robot, attendee) in self.attendees.iter_mut().enumerate() {
-            attendee.recall(roll.absent.standing_of(robot), is_valid);
-        }
-    }
-
-    /// The first task that has been serviced, is not over, and has not been serviced for as long as it takes
-    /// to give a robot up.
-    pub(super) fn abandoned_task(&self) -> Option<usize> {
-        let patience = self.site.patience_with_tasks();
-        let mut services = self.services();
-        services.find(|(_, known)| known.silence > patience).map(|(task, _)| task)
-    }
-
-    /// Whether a task that has been serviced, and is not over, has not been heard of in this control period.
-    pub(super) fn awaits_services(&self) -> bool {
-        self.services().any(|(_, known)| known.silence > 0)
-    }
-
-    /// The tasks that have been serviced and are not over.
-    pub(super) fn services(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
-        let known = self.known_tasks.iter().map(|(&task, &known)| (task, known));
-        known.filter(|&(task, _)| !self.closed.contains(task))
-    }
-
-    fn absent(&self) -> Absent {
-        let mut absent = Absent::default();
-        for (robot, attendee) in self.attendees.iter().enumerate() {
-            match attendee.standing.location() {
-                Attendance::Present => {}
-                Attendance::Suspended | Attendance::Returning => {
-                    absent.suspended.insert(robot);
-                }
-                Attendance::Gone => {
-                    absent.gone.insert(robot);
-                }
-            }
-        }
-        absent
-    }
-
-    /// The robots that it has heard of and that are gone.
-    pub(super) fn gone(&self) -> Vec<NodeId> {
-        self.robots_that(|it| it.known && it.is_gone()).collect()
-    }
-
-    /// The robots that do not take part.
-    pub(super) fn absent_robots(&self) -> impl Iterator<Item = NodeId> {
-        self.robots_that(|it| it.standing.location() != Attendance::Present)
-    }
-
-    /// Whether robots do not take part.
-    pub(super) fn misses_robots(&self) -> bool {
-        self.absent_robots().next().is_some()
-    }
-
-    /// The robots that take part, as far as it knows.
-    pub(super) fn attending(&self) -> IdSet {
-        self.robots_that(Attendee::takes_part).collect()
-    }
-
-    /// The robots whose attendance is such.
-    pub(super) fn robots_that(
-        &self,
-        are_such: impl Fn(&Attendee) -> bool,
-    ) -> impl Iterator<Item = NodeId> {
-        let attendees = self.attendees.iter().enumerate();
-        attendees.filter(move |(_, it)| are_such(it)).map(|(robot, _)| robot)
     }
 }
 

@@ -1,35 +1,35 @@
-//! Listening: the nodes that an access point hears, and what each of them last sent.
+//! The nodes that an access point receives, and what each of them last sent.
 
 use std::sync::Arc;
 
 use pleach_discrete::network::NodeId;
 
-use super::AccessPoint;
 use crate::network::beacon::Beacon;
-use crate::network::robot::ROUNDS_TO_BE_HEARD;
-use crate::network::roll::{Roll, Wreck};
+
+/// The nodes in range, by their numbers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Audience {
+    table: Vec<Neighbour>,
+    /// Where the next beacon is expected.
+    expected: usize,
+}
 
 /// A node in range.
 #[derive(Clone, Debug)]
-pub(super) struct Heard {
+struct Neighbour {
     /// What it sent last.
-    pub beacon: Arc<Beacon>,
-    /// Whether nothing has been heard of it in this control period yet.
+    beacon: Arc<Beacon>,
+    /// Whether nothing has been received from it in this control period yet.
     is_silent: bool,
 }
 
-impl Heard {
-    /// A node that is heard now.
-    pub fn now(beacon: &Arc<Beacon>) -> Self {
-        Heard { beacon: Arc::clone(beacon), is_silent: false }
-    }
-
+impl Neighbour {
     fn id(&self) -> NodeId {
         self.beacon.sender
     }
 
-    /// It is heard again; returns whether it tells anything new. A beacon that arrives after a newer one only says
-    /// that it is heard.
+    /// It is received again; returns whether it sends anything new. A beacon that arrives after a newer one only says
+    /// that the node is in range.
     fn renew(&mut self, beacon: &Arc<Beacon>) -> bool {
         self.is_silent = false;
         let is_new = !Arc::ptr_eq(&self.beacon, beacon) && !beacon.is_older_than(&self.beacon);
@@ -40,70 +40,84 @@ impl Heard {
     }
 }
 
-impl AccessPoint {
-    /// The beacon heard last of each node in range, by their senders.
-    pub(super) fn beacons(&self) -> impl Iterator<Item = &Beacon> {
-        self.heard.iter().map(|heard| &*heard.beacon)
+impl Audience {
+    /// The beacon received last of each node in range, by their senders.
+    pub fn beacons(&self) -> impl Iterator<Item = &Beacon> {
+        self.table.iter().map(|neighbour| &*neighbour.beacon)
     }
 
-    /// Takes in a message with a beacon. One that has been late since an earlier control period only tells of the roll.
-    pub(super) fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
-        let is_later = roll.called > self.roll.called;
-        self.roll.merge(roll);
-        if is_later {
-            self.last_beacon.tell_anew();
-        }
-        // Nobody but the first access point calls rolls: it has begun again since.
-        if is_later && (self.is_new || self.is_first()) {
-            self.recall(roll, self.period.max(period));
-        }
-        if period < self.period {
-            return;
-        }
-        if period > self.period {
-            self.is_behind = !self.is_new;
-            self.period = period - u32::from(self.is_behind);
-            self.last_beacon.tell_anew();
-        }
-        self.hear_beacon(beacon);
-        if beacon.duty.is_some() {
-            let (robot, place) = (beacon.sender, beacon.position);
-            self.sightings.note(Wreck::heard(robot, place, period));
-            beacon.sightings(period).for_each(|seen| self.sightings.note(seen));
-        }
-    }
-
-    /// Beacons of a round mostly come in the order of their senders, and have no news.
-    fn hear_beacon(&mut self, beacon: &Arc<Beacon>) {
-        let expected = self.heard.get(self.heard_up_to);
-        let place = match expected.is_some_and(|heard| Arc::ptr_eq(&heard.beacon, beacon)) {
-            true => Ok(self.heard_up_to),
-            false => self.heard.binary_search_by_key(&beacon.sender, Heard::id),
+    /// Takes in a beacon; returns whether it is news. Beacons of a round mostly come in the order of their senders, and
+    /// have no news.
+    pub fn receive(&mut self, beacon: &Arc<Beacon>) -> bool {
+        let expected = self.table.get(self.expected);
+        let place = match expected.is_some_and(|known| Arc::ptr_eq(&known.beacon, beacon)) {
+            true => Ok(self.expected),
+            false => self.table.binary_search_by_key(&beacon.sender, Neighbour::id),
         };
-        match place {
-            Ok(at) => self.has_news |= self.heard[at].renew(beacon),
-            Err(at) => {
-                self.heard.insert(at, Heard::now(beacon));
-                self.has_news = true;
-            }
-        }
         let (Ok(at) | Err(at)) = place;
-        self.heard_up_to = at + 1;
+        self.expected = at + 1;
+        if place.is_ok() {
+            return self.table[at].renew(beacon);
+        }
+        self.table.insert(at, Neighbour { beacon: Arc::clone(beacon), is_silent: false });
+        true
     }
 
     /// A control period begins, in which all nodes send again.
-    pub(super) fn expect_all(&mut self) {
-        self.heard.iter_mut().for_each(|heard| heard.is_silent = true);
+    pub fn expect_all(&mut self) {
+        self.table.iter_mut().for_each(|neighbour| neighbour.is_silent = true);
     }
 
-    /// After the first rounds all nodes in range have sent: those that were silent are out of range.
-    pub(super) fn forget_silent(&mut self) {
-        // The round that has begun is one more than those that are over; after the last, none has.
-        if (1..=ROUNDS_TO_BE_HEARD).contains(&self.round()) {
-            return;
-        }
-        let before = self.heard.len();
-        self.heard.retain(|heard| !heard.is_silent);
-        self.has_news |= self.heard.len() < before;
+    /// All nodes in range have sent in this control period: forgets those that were silent. Returns whether there were any.
+    pub fn forget_silent(&mut self) -> bool {
+        let before = self.table.len();
+        self.table.retain(|neighbour| !neighbour.is_silent);
+        self.table.len() < before
+    }
+}
+
+#[cfg(any(test, feature = "abstraction"))]
+impl Audience {
+    /// Forgets what all nodes have sent.
+    pub fn clear(&mut self) {
+        self.table.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pleach_continuous::Point;
+
+    use super::*;
+
+    fn beacon(sender: NodeId) -> Arc<Beacon> {
+        Arc::new(Beacon::silent(sender, Point::origin()))
+    }
+
+    #[test]
+    fn another_beacon_is_news_and_the_same_again_is_not() {
+        let mut audience = Audience::default();
+        let [one, same, two] = [beacon(3), beacon(3), beacon(1)];
+        assert!(audience.receive(&one) && !audience.receive(&one) && audience.receive(&same));
+        assert!(audience.receive(&two) && !audience.receive(&two));
+        assert_eq!(audience.beacons().map(|it| it.sender).collect::<Vec<_>>(), [1, 3]);
+    }
+
+    #[test]
+    fn a_beacon_that_arrives_after_a_newer_one_is_no_news() {
+        let mut audience = Audience::default();
+        let newer = Arc::new(Beacon { offers_made: 2, ..Beacon::silent(3, Point::origin()) });
+        assert!(audience.receive(&newer) && !audience.receive(&beacon(3)));
+        assert_eq!(audience.beacons().next().map(|it| it.offers_made), Some(2));
+    }
+
+    #[test]
+    fn nodes_that_are_silent_are_out_of_range() {
+        let mut audience = Audience::default();
+        let [one, two] = [beacon(1), beacon(2)];
+        assert!(audience.receive(&one) && audience.receive(&two) && !audience.forget_silent());
+        audience.expect_all();
+        assert!(!audience.receive(&two) && audience.forget_silent());
+        assert_eq!(audience.beacons().map(|it| it.sender).collect::<Vec<_>>(), [2]);
     }
 }

@@ -55,46 +55,37 @@ impl Holds<Rounds> for AccessPoint {
     type Effects = RoundActs;
 
     fn current(&self) -> &Current<Rounds> {
-        &self.rounds
+        self.schedule.current()
     }
 
     fn current_mut(&mut self) -> &mut Current<Rounds> {
-        &mut self.rounds
+        self.schedule.current_mut()
     }
 
     fn carry_out(&mut self, acts: RoundActs) {
-        self.acts = acts;
+        self.schedule.carry_out(acts);
     }
 }
 
 impl AccessPoint {
-    /// The number of this round of beacons; 0 between samples.
-    pub(super) fn round(&self) -> usize {
-        match *self.rounds {
-            Rounds::Listening(Listening { round }) => round,
-            Rounds::Resting(_) => 0,
-        }
-    }
-
     /// The clock is due: the access point takes the next row of its control period.
     pub(super) fn tick(&mut self, outputs: &mut NodeOutputs) -> Result<(), RobotError> {
         let site = Arc::clone(&self.site);
         site.automata.rounds.step_in_place::<Rounds>(self)?;
-        for act in std::mem::take(&mut self.acts) {
+        for act in self.schedule.take_acts() {
             match act {
                 RoundAct::RestartClock => {
-                    (self.clock, self.is_behind) = (0.0, false);
-                    self.period = self.period.saturating_add(1);
-                    self.last_beacon.tell_anew();
-                    self.expect_all();
+                    self.schedule.begin_period();
+                    self.outbox.send_beacon_again();
+                    self.audience.expect_all();
                 }
                 RoundAct::CallRoll => self.call_roll()?,
                 RoundAct::Forget => self.forget_silent(),
                 RoundAct::Deliberate => {
-                    let known = self.bulletin.id();
+                    let known = self.notices.bulletin().id();
                     self.process_news()?;
                     self.serve()?;
-                    if self.bulletin.id() != known {
+                    if self.notices.bulletin().id() != known {
                         self.tell_user(outputs);
                     }
                 }
@@ -102,7 +93,7 @@ impl AccessPoint {
                 RoundAct::TellBeacon => self.tell_beacon(outputs),
             }
         }
-        self.is_new &= self.round() > 0;
+        self.schedule.end_round();
         Ok(())
     }
 }
@@ -122,7 +113,7 @@ fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
 /// Never with the table and guards of this crate; they are still checked.
 pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
     use RoundAct::{CallRoll, Deliberate, Forget, RestartClock, TellBeacon, TellUser};
-    let wait = |point: &mut AccessPoint, duration: f64| point.clock += duration;
+    let wait = |point: &mut AccessPoint, duration: f64| point.schedule.pass(duration);
     Automaton::builder(ROUNDS, Round::Resting)
         .observing()
         .flow(Round::Resting, Flow::exact("τ̇ = 1", wait))

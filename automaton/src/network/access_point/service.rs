@@ -10,6 +10,7 @@ use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer};
 
 use super::attendance::Attendee;
+use super::tasks::TaskRecord;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS};
 use crate::network::beacon::{Announcement, Bulletin, Notice};
 use crate::network::order::Errand;
@@ -36,23 +37,23 @@ crate::observed! {
     pub const ACCESS_POINT_GLOSSARY;
     quantities {
         /// τ: seconds since the last sample.
-        clock: point.clock,
+        clock: point.schedule.clock(),
         /// Δt: seconds from sample to sample.
         period: point.site.settings.period,
         /// The number of this round of beacons.
-        round: point.round() as f64,
+        round: point.schedule.round() as f64,
         /// The number of rounds in this control period.
         rounds: point.site.settings.rounds_per_period as f64,
         /// The number of robots that take part, as far as it has heard.
-        robots: point.roster.len() as f64,
+        robots: point.roster.present().len() as f64,
         /// Rounds for which the roster, and the set of its robots that know a way to an access point, have not changed.
-        settled: point.settled_rounds as f64,
+        settled: point.roster.settled_rounds() as f64,
         /// Rounds after which robots count as gathered: more if some know no way to an access point.
         settling: point.rounds_until_gathered() as f64,
         /// Rounds since the election began.
-        waited: point.election_rounds as f64,
+        waited: point.ballot.rounds_passed() as f64,
         /// Rounds after which an election should be over.
-        longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait) as f64,
+        longest_wait: (PATIENCE_WITH_ELECTIONS * point.notices.longest_wait()) as f64,
         /// Rounds after which a robot that takes part in the elections for its task, and has known no way to an
         /// access point since that was announced, is cut off; 0 if there is none.
         longest_search: point.longest_search() as f64,
@@ -63,41 +64,41 @@ crate::observed! {
     }
     propositions {
         /// Another node has begun the next control period.
-        behind: point.is_behind,
+        behind: point.schedule.is_behind(),
         /// A robot that has taken part in the service of its task is gone, or has forgotten what became of it.
         misses_robot: point.misses_robot(),
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
         /// A robot of which it has never heard may not have begun yet.
-        awaits_robots: point.awaits_robots(),
+        awaits_robots: point.roster.awaits_robots(),
         /// A robot takes part that does not in the elections for its task: it has joined, or come back, since.
         has_newcomers: point.newcomers().next().is_some(),
         /// A robot that takes part in the elections for its task knew no way to an access point when it was
         /// announced, and knows one now.
         has_found_way: point.finders().next().is_some(),
         /// A robot that does not take part is not gone yet, or is coming back.
-        may_return: point.attendees.iter().any(Attendee::may_return),
+        may_return: point.roster.robots_that(Attendee::may_return).next().is_some(),
         /// The newest notice received announces a task, or calls for a recruit.
-        hears_election: matches!(point.heard_notice(), Some(Notice::Task(_) | Notice::Call { .. })),
+        hears_election: matches!(point.tasks.newest_notice(), Some(Notice::Task(_) | Notice::Call { .. })),
         /// The newest notice received announces a path Σ, or that the team advances.
-        hears_progress: matches!(point.heard_notice(), Some(Notice::Path(_) | Notice::Advance { .. })),
+        hears_progress: matches!(point.tasks.newest_notice(), Some(Notice::Path(_) | Notice::Advance { .. })),
         /// The newest notice received says that the task is serviced, or has been taken back.
         hears_service: matches!(
-            point.heard_notice(),
+            point.tasks.newest_notice(),
             Some(Notice::Serviced { .. } | Notice::Withdrawn { .. })
         ),
         /// The newest notice received says that the mission has ended.
-        hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
+        hears_end: matches!(point.tasks.newest_notice(), Some(Notice::Ended { .. })),
         /// The newest notice received says that the mission has ended, and that a task is given up.
         hears_failure: point.hears_failure(),
         /// The newest notice received says that the mission has ended for lack of robots.
         hears_want: point.hears_want(),
         /// A notice that the mission has ended for lack of robots has been received since the task was announced.
-        wants_robots: point.given_up_in.is_some(),
+        wants_robots: point.tasks.wants_robots(),
         /// A task that no robot can service is given up, and the mission goes on.
         skips_tasks: point.site.settings.unreachable == Unreachable::Skip,
         /// The user has asked it for tasks.
-        asked: point.requested.is_some(),
+        asked: point.tasks.requested().is_some(),
         /// A task is to be announced: one that is no longer serviced, or the next one asked for.
         task_left: point.abandoned().is_some() || point.new_tasks().next().is_some(),
         /// A task that is serviced is to end: its robots are free then.
@@ -123,7 +124,7 @@ crate::observed! {
         /// A leader is being elected, and the robots do not end the mission themselves where none of them bids.
         leader_wanted: matches!(point.notice(), Notice::Task(task) if task.last_resort.is_none()),
         /// A robot has bid in the election.
-        has_bid: point.election.as_ref().is_some_and(|election| election.best().is_some()),
+        has_bid: point.ballot.best().is_some(),
     }
 }
 
@@ -151,11 +152,11 @@ impl Holds<Serving> for AccessPoint {
     type Effects = Effects;
 
     fn current(&self) -> &Current<Serving> {
-        &self.service
+        self.tasks.current()
     }
 
     fn current_mut(&mut self) -> &mut Current<Serving> {
-        &mut self.service
+        self.tasks.current_mut()
     }
 
     fn carry_out(&mut self, effects: Effects) {
@@ -164,14 +165,17 @@ impl Holds<Serving> for AccessPoint {
             match effect {
                 ServiceEffect::TakeUp(bulletin) => self.take_up(bulletin),
                 ServiceEffect::Issue(notice) => {
-                    self.take_up(self.bulletin.next(self.id(), Shared::new(notice)));
+                    let bulletin = self.notices.bulletin().next(self.id(), Shared::new(notice));
+                    self.take_up(bulletin);
                 }
                 ServiceEffect::Supersede(notice) => {
-                    self.take_up(self.bulletin.superseding(self.id(), Shared::new(notice)));
+                    let bulletin =
+                        self.notices.bulletin().superseding(self.id(), Shared::new(notice));
+                    self.take_up(bulletin);
                 }
                 ServiceEffect::Close(task) => self.close(task),
-                ServiceEffect::GiveUp(task, outcome) => self.given_up.push((task, outcome)),
-                ServiceEffect::Report(event) => self.log.push(event),
+                ServiceEffect::GiveUp(task, outcome) => self.tasks.give_up(task, outcome),
+                ServiceEffect::Report(event) => self.outbox.report(event),
             }
         }
     }
@@ -180,21 +184,16 @@ impl Holds<Serving> for AccessPoint {
 impl AccessPoint {
     /// The task announced last and the electors of its leader, if they matter and are known.
     pub(super) fn announced(&self) -> Option<&Announced> {
-        match &*self.service {
+        match &**self.tasks.current() {
             Serving::Electing(Electing { announced })
             | Serving::UnderWay(UnderWay { announced }) => announced.as_ref(),
             _ => None,
         }
     }
 
-    /// The notice that it has heard and not taken up.
-    fn heard_notice(&self) -> Option<&Notice> {
-        self.newest.as_ref().map(|bulletin| &**bulletin.notice())
-    }
-
     /// How and why the robots have given up a task, as it hears.
     fn heard_failure(&self) -> Option<(Outcome, &str)> {
-        match self.heard_notice()? {
+        match self.tasks.newest_notice()? {
             Notice::Ended { outcome, reason, .. } if outcome.is_given_up() => {
                 Some((*outcome, reason))
             }
@@ -215,16 +214,18 @@ impl AccessPoint {
     /// The robots that take part in the elections for its task.
     fn electors(&self) -> impl Iterator<Item = &Attendee> {
         let roster = self.announced().into_iter().flat_map(|announced| announced.roster.iter());
-        roster.filter_map(|robot| self.attendees.get(robot))
+        roster.filter_map(|robot| self.roster.attendee(robot))
     }
 
     /// The robots that have taken part in the service of its task, and are gone.
     fn missed(&self) -> impl Iterator<Item = NodeId> {
         let pursued = self.announced();
         let has_taken_part = move |robot: &NodeId| {
-            pursued.is_some_and(|it| it.roster.contains(*robot) || self.joiners.contains(*robot))
+            pursued.is_some_and(|it| {
+                it.roster.contains(*robot) || self.roster.joiners().contains(*robot)
+            })
         };
-        self.gone().into_iter().filter(has_taken_part)
+        self.roster.gone().into_iter().filter(has_taken_part)
     }
 
     fn misses_robot(&self) -> bool {
@@ -235,7 +236,7 @@ impl AccessPoint {
     fn newcomers(&self) -> impl Iterator<Item = NodeId> {
         let pursued = self.announced();
         let is_new = move |robot| pursued.is_some_and(|it| !it.roster.contains(robot));
-        self.robots_that(Attendee::takes_part).filter(move |&robot| is_new(robot))
+        self.roster.robots_that(Attendee::takes_part).filter(move |&robot| is_new(robot))
     }
 
     /// The robots that take part in the elections for its task and knew no way to an access point when it was
@@ -246,12 +247,12 @@ impl AccessPoint {
 
     /// Those of them that still know none.
     fn searchers(&self) -> impl Iterator<Item = NodeId> {
-        self.wayless().filter(|&robot| !self.connected.contains(robot))
+        self.wayless().filter(|&robot| !self.roster.connected().contains(robot))
     }
 
     /// Those of them that know one now, and could not bid in the election.
     fn finders(&self) -> impl Iterator<Item = NodeId> {
-        self.wayless().filter(|&robot| self.connected.contains(robot))
+        self.wayless().filter(|&robot| self.roster.connected().contains(robot))
     }
 
     /// For how many rounds it waits for a robot that knows no way to an access point, if there is one.
@@ -262,12 +263,13 @@ impl AccessPoint {
 
     /// Rounds after which a robot that looks for another parent has found one, if there is one.
     pub(super) fn patience_with_searches(&self) -> usize {
-        PATIENCE_WITH_SEARCHES * self.site.settings.rounds_per_period.min(self.longest_wait)
+        PATIENCE_WITH_SEARCHES
+            * self.site.settings.rounds_per_period.min(self.notices.longest_wait())
     }
 
     /// A task that it announces now, with those who elect its leader.
     pub(super) fn announced_now(&self, announcement: &Announcement) -> Announced {
-        let is_wayless = |&robot: &NodeId| !self.connected.contains(robot);
+        let is_wayless = |&robot: &NodeId| !self.roster.connected().contains(robot);
         let wayless = Arc::new(announcement.roster.iter().filter(is_wayless).collect());
         Announced { wayless, ..electors_of(announcement) }
     }
@@ -276,17 +278,29 @@ impl AccessPoint {
     /// announced.
     fn forgetful(&self) -> impl Iterator<Item = NodeId> {
         let is_pursued = self.announced().is_some();
-        self.forgetful.iter().filter(move |_| is_pursued)
+        self.notices.forgetful().iter().filter(move |_| is_pursued)
     }
 
-    /// What the user has asked for, by number.
-    fn errands(&self) -> impl Iterator<Item = (usize, Errand)> {
-        let tasks = self.requested.iter().flat_map(|order| order.tasks.iter().copied());
-        tasks.enumerate()
+    /// The first task that has been serviced, is not over, and has not been serviced for as long as it takes
+    /// to give a robot up.
+    pub(super) fn abandoned_task(&self) -> Option<usize> {
+        let patience = self.site.patience_with_tasks();
+        let mut services = self.services();
+        services.find(|(_, known)| known.silence > patience).map(|(task, _)| task)
+    }
+
+    /// Whether a task that has been serviced, and is not over, has not been reported in this control period.
+    fn awaits_services(&self) -> bool {
+        self.services().any(|(_, known)| known.silence > 0)
+    }
+
+    /// The tasks that have been serviced and are not over.
+    fn services(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
+        self.tasks.records().filter(|&(task, _)| self.is_open(task))
     }
 
     fn is_open(&self, task: usize) -> bool {
-        !self.closed.contains(task)
+        !self.notices.closed().contains(task)
     }
 
     /// The task to announce next: the first that has been serviced and is not any more, or the next one of the others
@@ -297,14 +311,14 @@ impl AccessPoint {
 
     /// The first task asked for that has been serviced and is not any more.
     fn abandoned(&self) -> Option<usize> {
-        let asked_for = self.errands().count();
+        let asked_for = self.tasks.errands().count();
         self.abandoned_task().filter(|&task| task < asked_for)
     }
 
     /// The tasks asked for that have not been serviced and are not over.
     fn new_tasks(&self) -> impl Iterator<Item = (usize, Errand)> {
-        let is_new = |task| !self.known_tasks.contains_key(&task) && self.is_open(task);
-        self.errands().filter(move |&(task, _)| is_new(task))
+        let is_new = |task| self.tasks.record(task).is_none() && self.is_open(task);
+        self.tasks.errands().filter(move |&(task, _)| is_new(task))
     }
 
     fn next_new_task(&self) -> Option<usize> {
@@ -325,28 +339,26 @@ impl AccessPoint {
 
     /// The places from which the tree grows: the access points, and the tasks that are serviced.
     fn roots(&self) -> Vec<Point> {
-        let requested = self.requested.as_ref().map_or(&[][..], |order| &order.tasks);
-        let serviced = self.services().filter_map(|(task, _)| requested.get(task));
-        let tasks = serviced.map(|errand| errand.position);
+        let tasks = self.services().filter_map(|(task, _)| self.tasks.position_of(task));
         self.site.access_points.iter().copied().chain(tasks).collect()
     }
 
     /// Whether the user will ask for another task, or one is serviced that is to end.
     fn expects_task(&self) -> bool {
-        self.requested.as_ref().is_some_and(|order| order.continues)
+        self.tasks.requested().is_some_and(|order| order.continues)
             || self.tasks_to_end().next().is_some()
     }
 
     /// Whether a task that is serviced is to end.
     fn awaits_end(&self) -> bool {
         let pursued = self.pursued_task();
-        let is_serviced = |task| self.known_tasks.contains_key(&task) && pursued != Some(task);
+        let is_serviced = |task| self.tasks.record(task).is_some() && pursued != Some(task);
         self.tasks_to_end().any(is_serviced)
     }
 
     /// The tasks asked for that last for a time, and are not over.
     fn tasks_to_end(&self) -> impl Iterator<Item = usize> {
-        let lasting = self.errands().filter(|(_, errand)| errand.lasts.is_some());
+        let lasting = self.tasks.errands().filter(|(_, errand)| errand.lasts.is_some());
         lasting.map(|(task, _)| task).filter(|&task| self.is_open(task))
     }
 
@@ -357,18 +369,17 @@ impl AccessPoint {
 
     /// Whether the task that is pursued has been taken back.
     fn pursues_withdrawn(&self) -> bool {
-        let errand = |task: usize| self.requested.as_ref().and_then(|order| order.tasks.get(task));
-        let is_withdrawn = |task| errand(task).is_some_and(|errand| errand.withdrawn);
-        self.announced().is_some_and(|it| !self.is_open(it.task) || is_withdrawn(it.task))
+        let is_over = |task| !self.is_open(task) || self.tasks.is_withdrawn(task);
+        self.pursued_task().is_some_and(is_over)
     }
 
     /// The first task that is not pursued and is over, with what has become of it.
     fn next_closing(&self) -> Option<(usize, MissionEvent)> {
         let pursued = self.pursued_task();
         let mut open =
-            self.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
+            self.tasks.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
         open.find_map(|(task, errand)| {
-            let serviced = self.known_tasks.get(&task);
+            let serviced = self.tasks.record(task);
             let has_ended = |periods| serviced.is_some_and(|known| known.has_lasted(periods));
             match errand.lasts {
                 _ if errand.withdrawn => Some((task, MissionEvent::TaskWithdrawn { task })),
@@ -389,19 +400,17 @@ impl AccessPoint {
 
     /// The robots that have not answered in the election under way.
     fn unanswering(&self, roster: &IdSet) -> Vec<NodeId> {
-        let has_token =
-            |robot| self.election.as_ref().is_some_and(|election| election.has_token(robot));
-        roster.iter().filter(|&robot| !has_token(robot)).collect()
+        roster.iter().filter(|&robot| !self.ballot.has_token(robot)).collect()
     }
 
     /// The announcement of a task to the robots that take part now.
     pub(super) fn announcement_of(&self, task: usize) -> Option<Announcement> {
-        let requested = self.requested.as_ref()?;
+        let requested = self.tasks.requested()?;
         Some(Announcement {
             task,
-            position: requested.tasks.get(task)?.position,
-            before: requested.positions(self.end_of_known_tasks().max(task)),
-            roster: self.present_roster(),
+            position: self.tasks.position_of(task)?,
+            before: requested.positions(self.tasks.end().max(task)),
+            roster: self.roster.present_now(),
             eligible: self.site.all_access_points(),
             again: false,
             stretched: false,
@@ -409,23 +418,12 @@ impl AccessPoint {
         })
     }
 
-    /// A number above those of all tasks that have been serviced.
-    fn end_of_known_tasks(&self) -> usize {
-        self.known_tasks.last_key_value().map_or(0, |(task, _)| task + 1)
-    }
-
-    /// The robots that take part now. The roll may have been called since its roster was made up.
-    fn present_roster(&self) -> Arc<IdSet> {
-        match self.keeps_attendance() {
-            true => Arc::new(self.attending()),
-            false => Arc::clone(&self.roster),
-        }
-    }
-
     /// How it issues a notice. Robots that it misses may know later ones, or go by an earlier announcement
     /// when they come back.
     fn issue(&self, notice: Notice) -> ServiceEffect {
-        match self.misses_robots() || self.bulletin.id().is_late_in_its_epoch() {
+        match self.roster.absent_robots().next().is_some()
+            || self.notices.bulletin().id().is_late_in_its_epoch()
+        {
             true => ServiceEffect::Supersede(notice),
             false => ServiceEffect::Issue(notice),
         }
@@ -434,15 +432,15 @@ impl AccessPoint {
     /// The task that is pursued with its electors, as robots tell it: an access point that restarts
     /// learns of it so.
     fn current_electors(&self) -> Option<Announced> {
-        let epoch = self.newest.as_ref().map(|newest| newest.id().epoch());
-        let current = self.announced.as_ref().filter(|(id, _)| Some(id.epoch()) == epoch);
+        let epoch = self.tasks.newest().map(|newest| newest.id().epoch());
+        let current = self.notices.announced().filter(|(id, _)| Some(id.epoch()) == epoch);
         current.map(|(_, announcement)| electors_of(announcement))
     }
 
     /// Why no robot bids for a task.
     fn why_no_bid(&self, task: usize) -> (Outcome, String) {
         let name = self.site.name_of_task(task);
-        let absent: Vec<NodeId> = self.absent_robots().collect();
+        let absent: Vec<NodeId> = self.roster.absent_robots().collect();
         let cut_off: Vec<NodeId> = self.searchers().collect();
         let no_robot = format!("no robot is left that can go to task {name}");
         if !absent.is_empty() {
@@ -478,7 +476,7 @@ impl AccessPoint {
 
     fn is_election_over(&self) -> bool {
         self.announced().is_some_and(|announced| {
-            self.election.as_ref().is_some_and(|known| known.is_complete(&announced.roster))
+            self.ballot.election().is_some_and(|known| known.is_complete(&announced.roster))
         })
     }
 }
@@ -515,7 +513,7 @@ impl KnowsTask for UnderWay {
 
 /// It takes up the notice that it has heard.
 fn take_up(point: &AccessPoint, effects: &mut Effects) -> Option<Notice> {
-    let newest = point.newest.clone()?;
+    let newest = point.tasks.newest()?.clone();
     let notice = Notice::clone(newest.notice());
     effects.push(ServiceEffect::TakeUp(newest));
     Some(notice)
@@ -557,10 +555,12 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
     let task = point.next_task()?;
     let announcement = point.announcement_of(task)?;
     let announced = Some(point.announced_now(&announcement));
-    let is_new = !point.known_tasks.contains_key(&task);
+    let is_new = point.tasks.record(task).is_none();
     effects.push(ServiceEffect::Report(match is_new {
         true => MissionEvent::TaskAnnounced { task },
-        false => MissionEvent::TaskReannounced { task, gone: point.gone(), joined: Vec::new() },
+        false => {
+            MissionEvent::TaskReannounced { task, gone: point.roster.gone(), joined: Vec::new() }
+        }
     }));
     effects.push(point.issue(Notice::Task(Shared::new(announcement))));
     Some(Electing { announced })
@@ -644,7 +644,7 @@ fn end(
 
 fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
     let mut reason = "no robot is connected to an access point".to_owned();
-    let gone = point.gone();
+    let gone = point.roster.gone();
     if !gone.is_empty() {
         reason.push_str(&format!(" any more: {}", why_absent(&point.site.names_of(&gone))));
     }
@@ -654,7 +654,7 @@ fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> O
 /// No task is left. Where some have been given up, the outcome is that of the first of them.
 fn finish<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
     let (count, closed, given_up) =
-        (point.errands().count(), point.closed.len(), point.given_up.len());
+        (point.tasks.errands().count(), point.notices.closed().len(), point.tasks.given_up().len());
     let over = closed.saturating_sub(given_up);
     let serviced = count.saturating_sub(closed);
     let mut reason = match closed {
@@ -665,11 +665,11 @@ fn finish<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
         reason.push_str(&format!(", and {over} have ended or been taken back"));
     }
     if given_up > 0 {
-        let tasks: Vec<usize> = point.given_up.iter().map(|&(task, _)| task).collect();
+        let tasks: Vec<usize> = point.tasks.given_up().iter().map(|&(task, _)| task).collect();
         let names: Vec<usize> = tasks.iter().map(|&task| point.site.name_of_task(task)).collect();
         reason.push_str(&format!("; no robot could service {}", phrase::named("task", &names)));
     }
-    let outcome = point.given_up.first().map_or(Outcome::Serviced, |&(_, outcome)| outcome);
+    let outcome = point.tasks.given_up().first().map_or(Outcome::Serviced, |&(_, outcome)| outcome);
     end(point, effects, outcome, None, reason)
 }
 

@@ -7,10 +7,10 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Election, IdSet, NodeId, Post, PostId};
 use serde_json::json;
 
-use super::attendance::{Attendee, Gone, Present, Returning, Standing, Suspended, TaskRecord};
-use super::hearing::Heard;
+use super::attendance::{Attendee, Gone, Present, Returning, Standing, Suspended};
+use super::tasks::TaskRecord;
 use super::{AccessPoint, ROUNDS_UNTIL_ROSTER_SETTLES};
-use crate::located::{Current, Place as _};
+use crate::located::Place as _;
 use crate::network::beacon::{Announcement, Beacon, Bulletin, Notice, Reports};
 use crate::network::duty::{Duty, Held, Path, Standby, Station};
 use crate::network::message::Message;
@@ -69,17 +69,17 @@ fn it_knows_of_the_move_of_a_robot_that_asks_it_to() {
     let asked = |from: Point, witness: usize, period: u32| {
         let mut point = access_point();
         let west = Point::new(4.0, 5.0);
-        point.period = 7;
-        point.hear(7, &roll(7, &[]), &Arc::new(beacon(0, west)));
+        point.schedule.join(7, true);
+        point.receive(7, &roll(7, &[]), &Arc::new(beacon(0, west)));
         let segment = Segment { from, to: from + Vector::new(0.06, 0.0) };
         let message = Message::Proposal { period, segment, witness: Some(witness) };
         let mut outputs = Outputs::of(2);
         let heard = Input::Heard { from: 0, message: &message };
         point.step(heard, &mut outputs).expect("guards have values");
         let answers = outputs.drain_sent().count();
-        point.roll.absent = roll(7, &[0]).absent;
+        point.membership.call_roll(7, roll(7, &[0]).absent.as_ref().clone());
         point.locate_wrecks();
-        (answers, point.wrecks[0].astray)
+        (answers, point.membership.wrecks()[0].astray)
     };
     let here = Point::new(4.0, 5.0);
     let (answers, astray) = asked(here, 2, 7);
@@ -96,7 +96,7 @@ fn it_knows_of_the_move_of_a_robot_that_asks_it_to() {
 fn it_processes_what_has_changed() {
     let (mut point, all) = (access_point(), roll(1, &[]));
     let is_news = |point: &mut AccessPoint, beacon: &Arc<Beacon>| {
-        point.hear(1, &all, beacon);
+        point.receive(1, &all, beacon);
         let has_news = point.has_news;
         point.process_news().expect("guards have values");
         has_news
@@ -106,9 +106,12 @@ fn it_processes_what_has_changed() {
     assert!(!is_news(&mut point, &here), "the same again");
     assert!(is_news(&mut point, &moved), "another one");
     assert!(!is_news(&mut point, &moved), "that one again");
-    point.expect_all();
+    point.audience.expect_all();
     point.forget_silent();
-    assert!(point.has_news && point.heard.is_empty(), "nothing is heard of it any more");
+    assert!(
+        point.has_news && point.audience.beacons().next().is_none(),
+        "nothing is heard of it any more"
+    );
 }
 
 /// Robots that have not heard them themselves keep away from these places.
@@ -116,7 +119,7 @@ fn it_processes_what_has_changed() {
 fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
     let mut point = access_point();
     let mut told = |period: u32, roll: &Roll, beacons: Vec<Beacon>| {
-        beacons.into_iter().for_each(|beacon| point.hear(period, roll, &Arc::new(beacon)));
+        beacons.into_iter().for_each(|beacon| point.receive(period, roll, &Arc::new(beacon)));
         point.deliberate().expect("guards have values");
         point.public_state().wrecks.to_vec()
     };
@@ -140,14 +143,14 @@ fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
 fn robots_are_suspended_until_they_are_heard_by_an_access_point_that_begins_again() {
     let absent = |is_new: bool| {
         let mut point = access_point();
-        (point.period, point.is_new) = (7, is_new);
-        point.hear(40, &roll(40, &[]), &Arc::new(beacon(0, HERE)));
+        point.schedule.join(7, is_new);
+        point.receive(40, &roll(40, &[]), &Arc::new(beacon(0, HERE)));
         let mut absent = Vec::new();
         for period in 41..44 {
-            point.period = period;
+            point.schedule.join(period, point.schedule.is_new());
             point.call_roll().expect("guards have values");
-            absent.push(point.roll.absent.suspended.iter().collect::<Vec<_>>());
-            point.hear(period, &Roll::default(), &Arc::new(beacon(0, HERE)));
+            absent.push(point.membership.roll().absent.suspended.iter().collect::<Vec<_>>());
+            point.receive(period, &Roll::default(), &Arc::new(beacon(0, HERE)));
             point.survey_robots();
         }
         absent
@@ -163,15 +166,15 @@ fn who_is_gone_stays_gone_when_an_access_point_begins_again() {
     let mut point = access_point();
     let gone = Absent { gone: [1].into_iter().collect(), ..Absent::default() };
     let called = Roll { called: 40, absent: Arc::new(gone) };
-    point.hear(40, &called, &Arc::new(beacon(0, HERE)));
+    point.receive(40, &called, &Arc::new(beacon(0, HERE)));
     let mut standing = Vec::new();
     for period in 41..44 {
-        point.period = period;
+        point.schedule.join(period, point.schedule.is_new());
         point.call_roll().expect("guards have values");
-        let absent = &point.roll.absent;
+        let absent = &point.membership.roll().absent;
         standing.push((absent.gone.contains(1), absent.suspended.contains(1)));
         if period == 42 {
-            point.hear(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
+            point.receive(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
             point.survey_robots();
         }
     }
@@ -183,12 +186,12 @@ fn who_is_gone_stays_gone_when_an_access_point_begins_again() {
 fn a_robot_that_knows_no_way_is_not_missed_while_it_is_heard() {
     let mut point = access_point();
     for period in 1..30 {
-        point.period = period;
+        point.schedule.join(period, point.schedule.is_new());
         point.call_roll().expect("guards have values");
-        point.hear(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
+        point.receive(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
         point.survey_robots();
     }
-    assert!(!point.roll.absent.contains(1) && !point.attending().contains(1));
+    assert!(!point.membership.roll().absent.contains(1) && !point.roster.attending().contains(1));
 }
 
 /// It has been attached, and is too far off for a link now that the robot between has stopped.
@@ -197,13 +200,13 @@ fn a_robot_that_knows_no_way_is_not_waited_for_for_ever() {
     let mut point = access_point();
     point.is_asked(&[Task::at(THERE)], 1);
     for robot in [0, 1] {
-        point.hear(0, &Roll::default(), &Arc::new(beacon(robot, HERE)));
-        point.attendees[robot].attend();
+        point.receive(0, &Roll::default(), &Arc::new(beacon(robot, HERE)));
+        point.roster.attend(&Reports { below: IdSet::singleton(robot), ..Reports::default() });
     }
     let mut reports = Reports { below: [0].into_iter().collect(), ..Reports::default() };
     reports.strays.insert(1);
     let announces_after = |point: &mut AccessPoint, rounds: usize| {
-        point.settled_rounds = rounds;
+        point.roster.has_settled(rounds);
         point.update_roster(reports.clone());
         point.serve().expect("guards have values");
         matches!(point.notice(), Notice::Task(_))
@@ -228,43 +231,27 @@ impl AccessPoint {
 
     /// It heard `age` control periods ago that a task is serviced, and `silence` ago of its robot.
     fn has_heard_of(&mut self, task: usize, age: u32, silence: u32) {
-        self.service = Current::new(Serving::Done(Done { task }));
+        self.tasks.is_at(Serving::Done(Done { task }));
         self.expect_serviced(task);
-        self.known_tasks.insert(task, TaskRecord { silence, age });
+        self.tasks.has_record(task, TaskRecord { silence, age });
     }
 
     /// It pursues a task, and has taken up this notice.
     fn pursues(&mut self, task: usize, notice: Notice) {
         let roster = Arc::new([0, 1].into_iter().collect());
         let announced = Some(Announced { task, roster, wayless: Arc::default(), unanswered: 0 });
-        self.service = Current::new(Serving::UnderWay(UnderWay { announced }));
-        self.bulletin = self.bulletin.next(0, Shared::new(notice));
+        self.tasks.is_at(Serving::UnderWay(UnderWay { announced }));
+        self.notices.issue(0, notice);
     }
 
     /// What it tells observers when it serves the user.
     fn serves_user(&mut self) -> Vec<MissionEvent> {
         self.serve().expect("guards have values");
-        std::mem::take(&mut self.log)
+        self.outbox.take_reports()
     }
 }
 
 const THERE: [f64; 2] = [9.0, 9.0];
-
-#[test]
-fn a_late_copy_of_a_request_takes_nothing_back() {
-    let tasks = [Task { withdrawn: Some(9), ..Task::at(THERE) }, Task::at(THERE)];
-    let later = [tasks[0], Task { announced: Some(5), ..tasks[1] }];
-    let mut point = access_point();
-    let known = |point: &AccessPoint| point.requested.as_ref().map(|order| order.tasks.len());
-    point.is_asked(&later, 4);
-    assert_eq!(known(&point), Some(1));
-    point.is_asked(&later, 5);
-    point.is_asked(&later, 4);
-    assert_eq!(known(&point), Some(2));
-    point.is_asked(&later, 9);
-    point.is_asked(&later, 8);
-    assert!(point.requested.as_ref().is_some_and(|order| order.tasks[0].withdrawn));
-}
 
 #[test]
 fn a_task_ends_when_it_has_lasted_and_is_heard_of() {
@@ -274,7 +261,7 @@ fn a_task_ends_when_it_has_lasted_and_is_heard_of() {
         point.has_heard_of(0, age, silence);
         let events = point.serves_user();
         assert_eq!(point.public_state().closed.contains(0), !events.is_empty());
-        (events, point.service.location())
+        (events, point.tasks.current().location())
     };
     use pleach_discrete::network::Service;
     assert_eq!(closing(79, 0), (vec![], Service::Done), "the mission waits for its end");
@@ -284,7 +271,7 @@ fn a_task_ends_when_it_has_lasted_and_is_heard_of() {
     point.is_asked(&[Task::at(THERE)], 1);
     point.has_heard_of(0, 9_999, 0);
     assert_eq!(point.serves_user(), [], "it is serviced for ever");
-    assert_eq!(point.service.location(), Service::Over);
+    assert_eq!(point.tasks.current().location(), Service::Over);
 }
 
 #[test]
@@ -314,9 +301,9 @@ fn a_task_that_is_pursued_is_given_up_when_no_secondary_team_is_on_its_way() {
         let mut point = access_point();
         point.is_asked(&[Task { withdrawn: Some(3), ..Task::at(THERE) }], period);
         point.pursues(0, notice);
-        let epoch = point.bulletin.id().epoch();
+        let epoch = point.notices.bulletin().id().epoch();
         let events = point.serves_user();
-        let has_superseded = point.bulletin.id().epoch() > epoch;
+        let has_superseded = point.notices.bulletin().id().epoch() > epoch;
         assert_eq!(has_superseded, *point.notice() == Notice::Withdrawn { task: 0 });
         assert_eq!(has_superseded, point.public_state().closed.contains(0));
         events
@@ -335,10 +322,11 @@ impl AccessPoint {
     fn hears_of_failure(&mut self) -> Vec<MissionEvent> {
         let (outcome, reason) = (Outcome::InsufficientRobots, "too few".to_owned().into());
         let end = Notice::Ended { outcome, reason, task: Some(0) };
-        let bulletin = self.bulletin.next(1, Shared::new(end));
-        self.heard = vec![Heard::now(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }))];
-        self.hear_notices().expect("guards have values");
-        std::mem::take(&mut self.log)
+        let bulletin = self.notices.bulletin().next(1, Shared::new(end));
+        self.audience.clear();
+        self.audience.receive(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }));
+        self.receive_notices().expect("guards have values");
+        self.outbox.take_reports()
     }
 
     /// Robots 0 and 1 pursue task 0, and this robot stands like this.
@@ -346,17 +334,17 @@ impl AccessPoint {
         self.is_asked(&[Task::at(THERE)], 1);
         self.pursues(0, Notice::Advance { joined: None });
         let validity = self.site.roll_validity();
-        self.begin_attendance();
-        self.attendees.iter_mut().for_each(Attendee::attend);
+        self.keep_attendance();
+        self.roster.attend_all();
         self.survey_robots();
-        self.attendees[robot] = Attendee::absent(standing, validity);
+        self.roster.stands(robot, Attendee::absent(standing, validity));
     }
 
     /// The only robot of the elections for its task is robot 0.
     fn knows_one_elector(&mut self) {
         let roster = Arc::new([0].into_iter().collect());
         let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered: 0 });
-        self.service = Current::new(Serving::UnderWay(UnderWay { announced }));
+        self.tasks.is_at(Serving::UnderWay(UnderWay { announced }));
     }
 }
 
@@ -372,7 +360,7 @@ fn robots_that_have_joined_are_asked_before_a_task_is_given_up() {
     assert_eq!(announcement.roster.iter().collect::<Vec<_>>(), [0, 1]);
     let end = Notice::Ended { outcome: Outcome::Blocked, reason: Arc::default(), task: Some(0) };
     let late = Bulletin::first(Shared::new(Notice::Quiet)).next(1, Shared::new(end));
-    assert!(point.bulletin.id().is_newer_than(late.id()), "the end is superseded");
+    assert!(point.notices.bulletin().id().is_newer_than(late.id()), "the end is superseded");
 }
 
 /// It may be of the team by now, or on Σ.
@@ -384,13 +372,14 @@ fn a_robot_that_has_joined_is_missed_like_the_others() {
         point.knows_one_elector();
         let announcement = point.announcement_of(0).expect("it is asked for it");
         let announcement = Announcement { roster: Arc::new(IdSet::singleton(0)), ..announcement };
-        point.announced = Some((point.bulletin.id(), Shared::new(announcement)));
+        let id = point.notices.bulletin().id();
+        point.notices.follow(Some((id, Shared::new(announcement))));
         if has_joined {
-            point.attendees.iter_mut().for_each(Attendee::attend);
+            point.roster.attend_all();
             point.call_roll().expect("guards have values");
-            assert_eq!(point.joiners, IdSet::singleton(1));
+            assert_eq!(*point.roster.joiners(), IdSet::singleton(1));
         }
-        point.attendees[1] = Attendee::absent(Standing::Gone(Gone), point.site.roll_validity());
+        point.roster.stands(1, Attendee::absent(Standing::Gone(Gone), point.site.roll_validity()));
         point.serves_user()
     };
     let without = MissionEvent::TaskReannounced { task: 0, gone: vec![1], joined: vec![] };
@@ -404,7 +393,7 @@ fn a_mission_does_not_end_while_a_robot_may_come_back() {
         point.pursues_without(1, standing);
         point.knows_one_elector();
         point.hears_of_failure();
-        point.service.location()
+        point.tasks.current().location()
     };
     use pleach_discrete::network::Service;
     assert_eq!(becomes_of(Standing::Returning(Returning)), Service::UnderWay);
@@ -419,9 +408,11 @@ fn what_follows_an_end_is_taken_up() {
     point.knows_one_elector();
     point.hears_of_failure();
     assert!(matches!(point.notice(), Notice::Ended { .. }));
-    let bulletin = point.bulletin.superseding(5, Shared::new(Notice::Advance { joined: None }));
-    point.heard = vec![Heard::now(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }))];
-    point.hear_notices().expect("guards have values");
+    let bulletin =
+        point.notices.bulletin().superseding(5, Shared::new(Notice::Advance { joined: None }));
+    point.audience.clear();
+    point.audience.receive(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }));
+    point.receive_notices().expect("guards have values");
     assert_eq!(*point.notice(), Notice::Advance { joined: None });
 }
 
@@ -445,12 +436,12 @@ fn an_end_supersedes_what_robots_that_are_missed_may_know() {
         let mut point = access_point();
         point.is_asked(&[Task::at(THERE)], 1);
         point.has_heard_of(0, 30, 0);
-        point.begin_attendance();
-        point.attendees[1] = Attendee::absent(standing, point.site.roll_validity());
-        let epoch = point.bulletin.id().epoch();
+        point.keep_attendance();
+        point.roster.stands(1, Attendee::absent(standing, point.site.roll_validity()));
+        let epoch = point.notices.bulletin().id().epoch();
         point.serve().expect("guards have values");
         assert!(matches!(point.notice(), Notice::Ended { .. }));
-        point.bulletin.id().epoch() > epoch
+        point.notices.bulletin().id().epoch() > epoch
     };
     assert!(supersedes(Standing::Gone(Gone)) && !supersedes(Standing::Present(Present)));
 }
@@ -463,9 +454,9 @@ fn a_mission_ends_when_a_robot_does_not_answer() {
         point.pursues_without(1, Standing::Present(Present));
         let roster = Arc::new([0, 1].into_iter().collect());
         let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered });
-        point.service = Current::new(Serving::Electing(Electing { announced }));
-        point.election_rounds = 1_000;
-        point.attendees.iter_mut().for_each(Attendee::attend);
+        point.tasks.is_at(Serving::Electing(Electing { announced }));
+        point.ballot.has_waited(1_001);
+        point.roster.attend_all();
         let events = point.serves_user();
         let reason = match point.notice() {
             Notice::Ended { outcome: Outcome::Blocked, reason, .. } => Some(reason.to_string()),
@@ -488,18 +479,18 @@ fn no_task_is_out_of_reach_while_a_robot_looks_for_its_way() {
         let roster: Arc<IdSet> = Arc::new([0, 1].into_iter().collect());
         let announcement = point.announcement_of(0).expect("it is asked for it");
         assert_eq!(*announcement.roster, *roster);
-        point.connected = Arc::new(IdSet::singleton(0));
+        point.roster.connects(IdSet::singleton(0));
         let announced = Announced { unanswered, ..point.announced_now(&announcement) };
         assert_eq!(*announced.wayless, IdSet::singleton(1));
         let notice = Notice::Task(Shared::new(announcement));
-        point.bulletin = point.bulletin.next(3, Shared::new(notice));
-        point.service = Current::new(Serving::Electing(Electing { announced: Some(announced) }));
-        let mut election = Election::new(point.bulletin.id());
+        point.notices.issue(3, notice);
+        point.tasks.is_at(Serving::Electing(Electing { announced: Some(announced) }));
+        let mut election = Election::new(point.notices.bulletin().id());
         (0..2).for_each(|robot| election.place(robot, None));
-        point.election = Some(Arc::new(election));
-        point.election_rounds = rounds;
+        point.ballot.takes_part_in(election);
+        point.ballot.has_waited(rounds + 1);
         if has_found_way {
-            point.connected = roster;
+            point.roster.connects(roster.as_ref().clone());
         }
         let reason = |notice: &Notice| match notice {
             Notice::Ended { reason, .. } => Some(reason.to_string()),
@@ -524,20 +515,21 @@ fn no_task_is_out_of_reach_while_a_robot_may_come() {
     let becomes_of = |standing: Option<Standing>| {
         let mut point = access_point();
         point.pursues_without(1, Standing::Present(Present));
-        point.attendees[1] = match standing {
+        let attendee = match standing {
             Some(standing) => Attendee::absent(standing, point.site.roll_validity()),
             None => Attendee::new(point.site.roll_validity()),
         };
+        point.roster.stands(1, attendee);
         point.survey_robots();
         let roster: Arc<IdSet> = Arc::new([0].into_iter().collect());
         let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered: 0 });
         let announcement = point.announcement_of(0).expect("it is asked for it");
         let notice = Notice::Task(Shared::new(announcement));
-        point.bulletin = point.bulletin.next(3, Shared::new(notice));
-        point.service = Current::new(Serving::Electing(Electing { announced }));
-        let mut election = Election::new(point.bulletin.id());
+        point.notices.issue(3, notice);
+        point.tasks.is_at(Serving::Electing(Electing { announced }));
+        let mut election = Election::new(point.notices.bulletin().id());
         election.place(0, None);
-        point.election = Some(Arc::new(election));
+        point.ballot.takes_part_in(election);
         (point.serves_user(), matches!(point.notice(), Notice::Ended { .. }))
     };
     let joined = MissionEvent::TaskReannounced { task: 0, gone: vec![], joined: vec![1] };
@@ -553,20 +545,20 @@ fn a_task_is_not_out_of_reach_where_robots_of_others_have_been_asked_before() {
     let outcome_of = |eligible: &[usize]| {
         let mut point = access_point();
         point.pursues_without(1, Standing::Present(Present));
-        point.attendees.iter_mut().for_each(Attendee::attend);
+        point.roster.attend_all();
         let announcement = Announcement {
             eligible: Arc::new(eligible.iter().copied().collect()),
             ..point.announcement_of(0).expect("it is asked for it")
         };
         let roster = Arc::clone(&announcement.roster);
-        point.connected = Arc::clone(&roster);
+        point.roster.connects(roster.as_ref().clone());
         let notice = Notice::Task(Shared::new(announcement));
-        point.bulletin = point.bulletin.next(3, Shared::new(notice));
+        point.notices.issue(3, notice);
         let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered: 0 });
-        point.service = Current::new(Serving::Electing(Electing { announced }));
-        let mut election = Election::new(point.bulletin.id());
+        point.tasks.is_at(Serving::Electing(Electing { announced }));
+        let mut election = Election::new(point.notices.bulletin().id());
         (0..2).for_each(|robot| election.place(robot, None));
-        point.election = Some(Arc::new(election));
+        point.ballot.takes_part_in(election);
         point.serves_user();
         match point.notice() {
             Notice::Ended { outcome, .. } => Some(*outcome),
@@ -585,11 +577,14 @@ fn a_task_that_robots_have_given_up_is_skipped() {
     point.is_asked(&[Task::at(THERE), Task::at([4.0, 5.0])], 1);
     point.pursues_without(1, Standing::Gone(Gone));
     point.knows_one_elector();
-    let epoch = point.bulletin.id().epoch();
+    let epoch = point.notices.bulletin().id().epoch();
     let events = point.hears_of_failure();
-    assert_eq!((point.service.location(), &*point.closed), (Service::Done, &IdSet::singleton(0)));
+    assert_eq!(
+        (point.tasks.current().location(), &**point.notices.closed()),
+        (Service::Done, &IdSet::singleton(0))
+    );
     assert_eq!(*point.notice(), Notice::Withdrawn { task: 0 });
-    assert!(point.bulletin.id().epoch() > epoch, "robots that go on hear of it");
+    assert!(point.notices.bulletin().id().epoch() > epoch, "robots that go on hear of it");
     let is_told = |event: &MissionEvent| matches!(event, MissionEvent::TaskGivenUp { task: 0, .. });
     assert!(events.iter().any(is_told), "{events:?}");
 }
@@ -600,8 +595,10 @@ fn a_mission_ends_with_the_outcome_of_the_task_that_was_given_up() {
         let mut point = access_point_with(json!({}));
         point.is_asked(&[Task::at(THERE), Task::at([4.0, 5.0])], 1);
         point.has_heard_of(1, 30, 0);
-        point.given_up = given_up.to_vec();
-        given_up.iter().for_each(|&(task, _)| point.close(task));
+        for &(task, outcome) in given_up {
+            point.tasks.give_up(task, outcome);
+            point.close(task);
+        }
         point.serve().expect("guards have values");
         match point.notice() {
             Notice::Ended { outcome, reason, .. } => Some((*outcome, reason.to_string())),
@@ -623,7 +620,7 @@ fn tasks_come_in_the_order_of_the_mission() {
         let at = |x, priority| Task { priority: Some(priority), ..Task::at([x, 5.0]) };
         point.is_asked(&[at(9.0, 1), at(8.5, 3), at(2.0, 3), at(7.0, -1)], 1);
         for &task in serviced {
-            point.known_tasks.insert(task, TaskRecord { silence: 0, age: 1 });
+            point.tasks.has_record(task, TaskRecord { silence: 0, age: 1 });
         }
         point.next_task()
     };

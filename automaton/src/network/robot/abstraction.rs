@@ -206,7 +206,7 @@ impl Robot {
         let seen: BTreeSet<NodeId> = self.membership.seen().collect();
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let [_, strays, serves] = self.tree.reports();
-        let reports = (strays, serves, self.mission.forgetful());
+        let reports = (strays, serves, self.mission.notices().forgetful());
         let told =
             (self.schedule.period(), self.membership.roll(), self.tree.confirmation(), reports);
         let waits = (self.tree.orphaned_periods(), self.duty.is_late(), self.schedule.waits());
@@ -275,7 +275,7 @@ impl Robot {
                     tree.unused_periods(),
                     mission.team().followed_post(),
                     below,
-                    mission.closed()
+                    mission.notices().closed()
                 )
             ),
             format!(
@@ -287,7 +287,7 @@ impl Robot {
                     waited,
                     ballot.agreement(),
                     mission.team().report(),
-                    mission.is_stretched(),
+                    mission.notices().is_stretched(),
                     wait
                 )
             ),
@@ -296,9 +296,9 @@ impl Robot {
             format!(
                 "{:?}",
                 (
-                    mission.bulletin(),
+                    mission.notices().bulletin(),
                     mission.epoch(),
-                    mission.announced(),
+                    mission.notices().announced(),
                     has_reached,
                     ballot.route()
                 )

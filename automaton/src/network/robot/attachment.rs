@@ -269,7 +269,7 @@ impl Robot {
     /// Whether it could be attached to another tree: over a shorter way or, once links may be as long as they ever are,
     /// over any.
     pub(super) fn is_near_other_tree(&self) -> bool {
-        let is_longest = self.mission.is_stretched() || !self.site.could_stretch();
+        let is_longest = self.mission.notices().is_stretched() || !self.site.could_stretch();
         self.node_of_other_tree().is_some()
             || is_longest && self.nodes_of_other_trees().next().is_some()
     }

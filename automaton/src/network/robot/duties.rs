@@ -173,7 +173,7 @@ impl Robot {
     /// Whether the task that is serviced from its post is over.
     pub(super) fn services_closed_task(&self) -> bool {
         let task = self.duty.post().and_then(|post| post.task);
-        task.is_some_and(|task| self.mission.closed().contains(task))
+        task.is_some_and(|task| self.mission.notices().closed().contains(task))
     }
 
     /// Whether the path Σ that it learns of now passes its post, before or at the last break point.
@@ -215,7 +215,7 @@ impl Robot {
     /// given up, and tasks have ended, so that it may go on once their robots are free.
     pub(super) fn is_unbound(&self) -> bool {
         let has_ended = self.phase() == Phase::Ended || self.ends_now();
-        self.is_superseded() || has_ended && !self.mission.closed().is_empty()
+        self.is_superseded() || has_ended && !self.mission.notices().closed().is_empty()
     }
 
     /// Whether the primary team is dissolved.
@@ -416,7 +416,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
     let id = match joins_at_once && before.is_fixed() {
         true => before.id,
-        false => PostId((robot.site.robots as u32) + robot.mission.bulletin().number()),
+        false => PostId((robot.site.robots as u32) + robot.mission.notices().bulletin().number()),
     };
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
     let station = robot.station_here(post);

@@ -493,12 +493,11 @@ mod tests {
                 assert!(robot.offers().reply().is_none() && !robot.is_engaged());
             }
             robot.membership.is_told(Roll::default());
-            robot
-                .mission
-                .is_told(robot.mission.bulletin().next(2, Shared::new(Notice::Task(task()))));
-            robot.mission.goes_by(Some((robot.notice_id(), task())));
+            robot.mission.notices_mut().issue(2, Notice::Task(task()));
+            let id = robot.notice_id();
+            robot.mission.notices_mut().follow(Some((id, task())));
             offer_duty(&mut mover);
-            mover.announced = robot.mission.announced().cloned();
+            mover.announced = robot.mission.notices().announced().cloned();
             hear(&mut robot, &mover);
             let reply = robot.offers().reply().expect("it answers");
             assert_eq!(reply.accepted.is_none(), has_refused);

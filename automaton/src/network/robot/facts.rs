@@ -339,7 +339,7 @@ impl Robot {
         facts.burdened = self.is_burdened();
         facts.may_leave_post =
             self.is_bound_to_unused_post() || self.duty.is_bound() && self.takes_post_along();
-        facts.tasks_over = !self.mission.closed().is_empty();
+        facts.tasks_over = !self.mission.notices().closed().is_empty();
         facts.task_closed = self.services_closed_task();
         facts
     }
@@ -371,7 +371,7 @@ impl Robot {
 
     /// Whether it has reached its task by the announcement that it goes by.
     pub(super) fn has_reached_task(&self) -> bool {
-        let pursued = self.mission.announcement_id();
+        let pursued = self.mission.notices().announcement_id();
         pursued.is_some() && self.mission.accomplished() == pursued
     }
 
@@ -388,7 +388,7 @@ impl Robot {
     /// is not that of the elections before.
     pub(super) fn election_is_over(&self) -> bool {
         let (Some(election), Some((id, announcement))) =
-            (self.ballot.election(), self.mission.announced())
+            (self.ballot.election(), self.mission.notices().announced())
         else {
             return false;
         };

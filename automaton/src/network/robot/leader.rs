@@ -148,7 +148,7 @@ impl Robot {
 
     /// The notice that robots are too few, if it has announced the task as a last resort and no robot has bid.
     fn gives_up_without_bid(&self) -> Option<Notice> {
-        let (id, announcement) = self.mission.announced()?;
+        let (id, announcement) = self.mission.notices().announced()?;
         let is_without_bid = id.issuer == self.id && self.winner().is_none();
         let reason = announcement.last_resort.clone().filter(|_| is_without_bid)?;
         let task = Some(announcement.task);
@@ -173,7 +173,7 @@ impl Robot {
     /// The newest announcement by which robots go that it hears, if it does not go by it yet. Their notices come
     /// first: by these it gives up a task that has been announced again without it.
     pub(super) fn newer_announcement(&self) -> Option<&Announced> {
-        let own = self.mission.announcement_id();
+        let own = self.mission.notices().announcement_id();
         let own_notice = self.notice_id();
         let newer = self.neighbours.iter().filter_map(|known| {
             let announced = known.beacon.announced.as_ref()?;

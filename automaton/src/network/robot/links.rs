@@ -96,12 +96,12 @@ impl Robot {
 
     /// d_build: up to which length a link of the tree may be made.
     pub(super) fn build_length(&self) -> f64 {
-        self.site.lengths(self.mission.is_stretched()).build
+        self.site.lengths(self.mission.notices().is_stretched()).build
     }
 
     /// d_hard: which length no link of the tree exceeds.
     pub(super) fn hard_length(&self) -> f64 {
-        self.site.lengths(self.mission.is_stretched()).hard
+        self.site.lengths(self.mission.notices().is_stretched()).hard
     }
 
     /// Up to which length a link of the tree may have got through errors, as far as both of its ends may stray.

@@ -76,7 +76,7 @@ impl Holds<Mission> for Robot {
         for effect in effects {
             match effect {
                 MissionEffect::Report(event) => self.report(event),
-                MissionEffect::Issue(notice) => self.mission.issue(self.id, notice),
+                MissionEffect::Issue(notice) => self.mission.notices_mut().issue(self.id, notice),
                 MissionEffect::Learn(announced) => {
                     let task = announced.1.position;
                     let target = self.site.place_to_service(task, self.body.position());
@@ -84,7 +84,7 @@ impl Holds<Mission> for Robot {
                 }
                 MissionEffect::LedFrom(root) => self.mission.is_led_from(root),
                 MissionEffect::Accomplish => self.mission.accomplish(),
-                MissionEffect::Forgotten => self.mission.forget_election(self.id),
+                MissionEffect::Forgotten => self.mission.notices_mut().forget_election(self.id),
                 MissionEffect::Elect(election, route) => {
                     self.ballot.begin(election, route);
                     self.answer_election();
@@ -93,7 +93,7 @@ impl Holds<Mission> for Robot {
                 MissionEffect::Agree(agreement) => self.ballot.agree(agreement),
                 MissionEffect::KeepUp => self.mission.keep_up(),
                 MissionEffect::Restart => self.body.count_still_periods_anew(),
-                MissionEffect::Stretch => self.mission.stretch(),
+                MissionEffect::Stretch => self.mission.notices_mut().stretch(),
                 MissionEffect::Stay => self.stay(),
             }
         }
@@ -120,9 +120,11 @@ impl Robot {
     /// Merges what it knows of the mission with the beacons of its neighbours.
     pub(super) fn hear_notices(&mut self) {
         let longest_wait = self.longest_wait();
-        self.mission.wait_for(longest_wait);
+        let notices = self.mission.notices_mut();
+        notices.wait_for(longest_wait);
         for neighbour in self.neighbours.iter() {
-            self.mission.merge(&neighbour.beacon, &self.site);
+            notices.merge(&neighbour.beacon, &self.site);
+            notices.merge_bulletin(&neighbour.beacon.bulletin);
             self.ballot.merge(&neighbour.beacon);
         }
         self.answer_election();

@@ -20,7 +20,6 @@ mod absence;
 #[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
-mod ballot;
 mod bodies;
 mod body;
 mod confirmation;
@@ -37,13 +36,11 @@ mod knowledge;
 mod leader;
 mod lineage;
 mod links;
-mod membership;
 mod mission;
 mod motion;
 mod navigation;
 mod negotiation;
 mod neighbours;
-mod outbox;
 mod partner;
 mod path;
 mod places;
@@ -88,14 +85,16 @@ pub use view::RobotView;
 
 use crate::automaton::TransitionError;
 
+use super::ballot::Ballot;
 use super::beacon::{Announcement, Beacon, Notice};
 use super::duty::{Duty, Held, Standby, Station};
 use super::member::NodeOutputs;
+use super::membership::Membership;
 use super::message::Message;
+use super::outbox::Outbox;
 use super::record::MissionEvent;
 use super::site::Site;
 pub(super) use attachment::PATIENCE_WITH_UNUSED_POSTS;
-use ballot::Ballot;
 use body::Body;
 use context::context;
 use duties::Label;
@@ -104,10 +103,8 @@ use exchanges::Exchanges;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use knowledge::Knowledge;
-use membership::Membership;
 use negotiation::Negotiation;
 use neighbours::Neighbours;
-use outbox::Outbox;
 use places::places;
 use reservation::{Plan, Reservation, lease_of};
 use revision::Changes;
@@ -269,9 +266,9 @@ impl Robot {
         Beacon {
             sender: self.id,
             position: self.body.position(),
-            bulletin: self.mission.bulletin().clone(),
-            announced: self.mission.announced().cloned(),
-            forgetful: Arc::clone(self.mission.forgetful()),
+            bulletin: self.mission.notices().bulletin().clone(),
+            announced: self.mission.notices().announced().cloned(),
+            forgetful: Arc::clone(self.mission.notices().forgetful()),
             election: self.ballot.election().cloned(),
             agreement: self.ballot.agreement().cloned(),
             route: self.ballot.route().cloned(),
@@ -281,7 +278,7 @@ impl Robot {
             below: Arc::clone(below),
             strays: Arc::clone(strays),
             serves: Arc::clone(serves),
-            closed: Arc::clone(self.mission.closed()),
+            closed: Arc::clone(self.mission.notices().closed()),
             duty: Some(*self.duty),
             parked: self.is_parked(),
             way: self.way_asked_for(),
@@ -290,7 +287,7 @@ impl Robot {
             offers_made: self.offers().offers_made(),
             reply: self.offers().reply().cloned(),
             team: self.mission.team().report(),
-            stretched: self.mission.is_stretched(),
+            stretched: self.mission.notices().is_stretched(),
             longest_wait: self.longest_wait(),
             wrecks: Arc::clone(self.membership.wrecks()),
             branches: Arc::clone(self.tree.branches()),
@@ -304,17 +301,17 @@ impl Robot {
 
     /// The newest notice on the mission that it knows.
     pub(super) fn notice(&self) -> &Notice {
-        self.mission.bulletin().notice()
+        self.mission.notices().bulletin().notice()
     }
 
     /// The identity of the newest notice on the mission that it knows.
     pub(super) fn notice_id(&self) -> NoticeId {
-        self.mission.bulletin().id()
+        self.mission.notices().bulletin().id()
     }
 
     /// The announcement that it goes by.
     pub(super) fn announcement(&self) -> Option<&Announcement> {
-        self.mission.announcement()
+        self.mission.notices().announcement()
     }
 
     /// The task announced last, as far as it knows.

@@ -276,14 +276,14 @@ impl Robot {
         let knows_path = || self.mission.walk().is_some();
         let is_same_path =
             || path(&mover.beacon.agreement) == self.ballot.agreement().map(Agreement::id);
-        task(&mover.beacon.announced) == self.mission.announcement_id()
+        task(&mover.beacon.announced) == self.mission.notices().announcement_id()
             && (!is_on_path || knows_path() && is_same_path())
     }
 
     /// Whether it goes by the announcement by which the others go, and knows Σ where one is announced: one
     /// that has restarted does not at first.
     fn knows_mission(&self) -> bool {
-        let announced = self.mission.announcement_id();
+        let announced = self.mission.notices().announcement_id();
         let is_current = announced.is_some_and(|id| id.epoch() == self.notice_id().epoch());
         is_current && !self.changes.facts().path_announced
     }

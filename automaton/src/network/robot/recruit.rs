@@ -144,7 +144,12 @@ impl Robot {
         standstill: Option<Standstill>,
         ahead: bool,
     ) -> RecruitElection {
-        RecruitElection { before, standstill, ahead, stretched: self.mission.is_stretched() }
+        RecruitElection {
+            before,
+            standstill,
+            ahead,
+            stretched: self.mission.notices().is_stretched(),
+        }
     }
 
     /// Whether a recruit has been called for ahead of a standstill, and it learns now that the team goes on as it
@@ -153,7 +158,8 @@ impl Robot {
         let went_on_alone = matches!(*self.notice(), Notice::Advance { joined: None });
         let election = self.mission.recruit_election();
         went_on_alone
-            && election.is_some_and(|election| election.stretched == self.mission.is_stretched())
+            && election
+                .is_some_and(|election| election.stretched == self.mission.notices().is_stretched())
     }
 
     /// Its task as it is announced again where no robot of its tree can come:
@@ -176,13 +182,13 @@ impl Robot {
         if is_any_disconnected && others.len() < known.eligible.len() && !others.is_empty() {
             return Some(Announcement { eligible: Arc::new(others), ..known.clone() });
         }
-        let since_stretched = self.mission.is_stretched() && !known.stretched;
+        let since_stretched = self.mission.notices().is_stretched() && !known.stretched;
         let is_near_other_tree = standstill.is_some_and(|team| team.near_other_tree);
         let aids_other_tree = is_near_other_tree && (!known.again || since_stretched);
         (aids_other_tree || is_any_disconnected && since_stretched).then(|| Announcement {
             eligible: self.site.all_access_points(),
             again: known.again || aids_other_tree,
-            stretched: known.stretched || self.mission.is_stretched(),
+            stretched: known.stretched || self.mission.notices().is_stretched(),
             ..known.clone()
         })
     }
@@ -240,7 +246,7 @@ impl Robot {
     fn could_stretch(&self) -> bool {
         let calls_for_length =
             matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
-        calls_for_length && !self.mission.is_stretched()
+        calls_for_length && !self.mission.notices().is_stretched()
     }
 
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
@@ -273,7 +279,7 @@ impl Robot {
     pub(super) fn answer_call(&mut self) {
         let id = self.notice_id();
         // One that has restarted may have answered already: the task is announced again.
-        if !self.ballot.is_of(id) || self.mission.forgetful().contains(self.id) {
+        if !self.ballot.is_of(id) || self.mission.notices().forgetful().contains(self.id) {
             return;
         }
         if !self.knows_route() {
@@ -355,7 +361,7 @@ impl Robot {
     /// For how many rounds news may be under way, by the deepest place in a tree that it has heard of.
     pub(super) fn longest_wait(&self) -> usize {
         let depth = self.lineage().map_or(0, |way| way.hops());
-        self.mission.longest_wait().max(self.site.rounds_across(depth))
+        self.mission.notices().longest_wait().max(self.site.rounds_across(depth))
     }
 
     /// The way to the caller, through a tree neighbour that knows one; where the trees of two

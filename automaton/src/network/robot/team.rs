@@ -135,7 +135,7 @@ impl Robot {
     /// has been dissolved since.
     fn hears_follower(&self, own: PostId) -> bool {
         let follows = |post: &Post| post.kind == PostKind::Primary { follows: Some(own) };
-        let own_team = self.mission.announcement_id();
+        let own_team = self.mission.notices().announcement_id();
         let is_of_another = |neighbour: &Neighbour| {
             neighbour.beacon.announced.as_ref().is_some_and(|(id, _)| Some(*id) != own_team)
         };
@@ -326,7 +326,9 @@ impl Robot {
     /// none is left that could come, nobody has to.
     fn is_near_enough(&self) -> bool {
         let within = |distance: f64| distance <= self.site.settings.arrival_radius();
-        self.leads() && self.mission.is_stretched() && self.distance_to_task().is_some_and(within)
+        self.leads()
+            && self.mission.notices().is_stretched()
+            && self.distance_to_task().is_some_and(within)
     }
 
     /// Whether it is bound to a post from which it can service the task that it leads to. In the paper's order it is

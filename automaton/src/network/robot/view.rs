@@ -101,7 +101,7 @@ impl<'a> RobotView<'a> {
 
     /// The tasks that are over, as far as it knows.
     pub const fn closed(self) -> &'a Arc<IdSet> {
-        self.0.mission.closed()
+        self.0.mission.notices().closed()
     }
 
     /// Whether it is the elected leader, released or not.

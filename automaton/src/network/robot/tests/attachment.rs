@@ -538,8 +538,8 @@ fn a_bound_leader_waits_for_nodes_to_retire_before_it_calls() {
         scenario.control.strategy = Some(strategy);
         let mut robot = robot_of(&scenario);
         robot.advances_to(east(3.0));
-        let (id, known) = robot.mission.announced().cloned().expect("it knows the task");
-        robot.mission.goes_by(Some((
+        let (id, known) = robot.mission.notices().announced().cloned().expect("it knows the task");
+        robot.mission.notices_mut().follow(Some((
             id,
             Shared::new(Announcement { before: before.into(), ..(*known).clone() }),
         )));

@@ -77,7 +77,7 @@ fn nothing_is_foreseen_while_p1_may_come_to_attach_elsewhere() {
 fn caller(ahead: bool) -> Robot {
     let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
     robot.is_told(Notice::Call { caller: 0, releases_leader: false });
-    robot.mission.stretches(true);
+    robot.mission.notices_mut().set_stretched(true);
     robot.seeks_recruit(ahead, true);
     let mut election = Election::new(robot.notice_id());
     (0..ROBOTS).for_each(|other| election.place(other, None));
@@ -119,7 +119,7 @@ fn a_team_whose_links_have_been_stretched_calls_ahead_again() {
         let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
         robot.is_told(Notice::Call { caller: 1, releases_leader: false });
         robot.seeks_recruit(false, stretched_before);
-        robot.mission.stretches(true);
+        robot.mission.notices_mut().set_stretched(true);
         robot.is_told(Notice::Advance { joined: None });
         assert_eq!(next_phase(&mut robot), Phase::Advance);
         robot.mission.has_called_in_vain()

@@ -49,11 +49,11 @@ fn the_nearer_to_the_task_the_better_the_bid_of_a_leader() {
 fn an_election_is_not_over_by_the_roster_of_a_later_announcement() {
     let mut robot = asked(east(1.0));
     leader_bid(&mut robot);
-    let (id, known) = robot.mission.announced().cloned().expect("it knows the task");
+    let (id, known) = robot.mission.notices().announced().cloned().expect("it knows the task");
     let roster = Arc::new(IdSet::singleton(0));
     let announcement = Shared::new(Announcement { roster, ..(*known).clone() });
     let by = |id: NoticeId, robot: &mut Robot| {
-        robot.mission.goes_by(Some((id, announcement.clone())));
+        robot.mission.notices_mut().follow(Some((id, announcement.clone())));
         robot.election_is_over()
     };
     assert!(by(id, &mut robot));
@@ -73,12 +73,12 @@ fn who_takes_part_and_belongs_to_an_eligible_tree_competes() {
     let without = |roster: &[NodeId], eligible: &[usize]| {
         let mut robot = asked(east(1.0));
         let (id, mut announcement) = {
-            let (id, known) = robot.mission.announced().expect("it knows the task");
+            let (id, known) = robot.mission.notices().announced().expect("it knows the task");
             (*id, (**known).clone())
         };
         announcement.roster = Arc::new(roster.iter().copied().collect());
         announcement.eligible = Arc::new(eligible.iter().copied().collect());
-        robot.mission.goes_by(Some((id, Shared::new(announcement))));
+        robot.mission.notices_mut().follow(Some((id, Shared::new(announcement))));
         leader_bid(&mut robot).is_some()
     };
     assert!(without(&[0, 1], &[0, 1]));
@@ -92,11 +92,11 @@ fn a_holder_that_nobody_can_relieve_bids_below_those_that_can_leave() {
     let rank = |away: f64| {
         let mut robot = asked(east(1.0));
         let (id, mut known) = {
-            let (id, known) = robot.mission.announced().expect("it knows the task");
+            let (id, known) = robot.mission.notices().announced().expect("it knows the task");
             (*id, (**known).clone())
         };
         (known.task, known.before) = (1, Arc::from([east(away)]));
-        robot.mission.goes_by(Some((id, Shared::new(known))));
+        robot.mission.notices_mut().follow(Some((id, Shared::new(known))));
         let held = Post { parent: Some(Anchor::Access(0)), task: Some(0), ..fixed(0, 0) };
         robot.holds(held);
         robot.look_after_place().expect("it goes on");
@@ -240,7 +240,7 @@ fn a_robot_that_bears_others_is_no_recruit() {
     assert_eq!(class(&|_| {}), Some(3));
     let bears = |robot: &mut Robot| robot.hears(beacon(2, west(0.5), redundant(12, 0), &[]));
     assert_eq!(class(&bears), None);
-    let unknown = |robot: &mut Robot| robot.mission.goes_by(None);
+    let unknown = |robot: &mut Robot| robot.mission.notices_mut().follow(None);
     assert_eq!(class(&unknown), None, "it does not take part");
     // A relay that bears the caller alone can go with it, if no other robot can come.
     let relay = |robot: &mut Robot| {
@@ -274,7 +274,7 @@ fn a_robot_that_finds_no_way_waits_before_it_shows_where_it_could_help() {
     assert_eq!((bid.rank, bid.merit), (0, 0));
     assert!(!Robot::can_come(bid) && Robot::can_come(Bid { rank: 1, ..bid }));
     let mut forgetful = called(redundant(0, 11), false);
-    forgetful.mission.forget_election(0);
+    forgetful.mission.notices_mut().forget_election(0);
     forgetful.hears(knows_way(&forgetful, 1, east(0.5), fixed(11, 13)));
     assert_eq!(recruit_bid(&mut forgetful), None, "it may have answered before it restarted");
 }
@@ -311,7 +311,7 @@ fn rounds_of_an_election_are_counted_until_its_waits_are_over() {
 fn the_newest_announcement_by_which_others_go_is_learnt() {
     let mut robot = asked(east(1.0));
     assert!(robot.newer_announcement().is_none());
-    let known = robot.mission.announced().cloned().expect("it knows the task");
+    let known = robot.mission.notices().announced().cloned().expect("it knows the task");
     robot.hears(Beacon {
         announced: Some(known.clone()),
         ..beacon(1, east(0.5), redundant(11, 13), &[])
@@ -334,8 +334,8 @@ fn who_has_taken_part_and_begins_again_has_forgotten_what_became_of_it() {
     use super::super::mission::MissionEffect;
     let says_so = |elects: bool, on_path: Option<NodeId>| {
         let mut robot = asked(east(1.0));
-        let (id, task) = robot.mission.announced().cloned().expect("it knows the task");
-        robot.mission.goes_by(None);
+        let (id, task) = robot.mission.notices().announced().cloned().expect("it knows the task");
+        robot.mission.notices_mut().follow(None);
         let electors = (0..ROBOTS).filter(|&robot| robot != 0 || elects).collect();
         let task = Shared::new(Announcement { roster: Arc::new(electors), ..(*task).clone() });
         if let Some(robot_on_path) = on_path {
@@ -359,8 +359,9 @@ fn who_has_taken_part_and_begins_again_has_forgotten_what_became_of_it() {
 #[test]
 fn an_announcement_is_learnt_after_the_notices_by_it() {
     let mut robot = asked(east(1.0));
-    let (id, announcement) = robot.mission.announced().cloned().expect("it knows the task");
-    let bulletin = robot.mission.bulletin().superseding(11, Shared::new(Notice::Quiet));
+    let (id, announcement) =
+        robot.mission.notices().announced().cloned().expect("it knows the task");
+    let bulletin = robot.mission.notices().bulletin().superseding(11, Shared::new(Notice::Quiet));
     let announced = Some((bulletin.id(), announcement));
     assert!(bulletin.id().epoch() > id.epoch());
     robot.hears(Beacon { announced, bulletin, ..beacon(1, east(0.5), redundant(11, 13), &[]) });
@@ -380,9 +381,12 @@ fn where_no_robot_can_come_to_a_team_near_another_tree_all_are_asked_once_more()
     let asked = |near_other_tree: bool, again: bool, stretched: bool| {
         let mut robot = robot();
         robot.knows_task(east(3.0));
-        robot.mission.stretches(stretched);
-        let (id, known) = robot.mission.announced().cloned().expect("it knows the task");
-        robot.mission.goes_by(Some((id, Shared::new(Announcement { again, ..(*known).clone() }))));
+        robot.mission.notices_mut().set_stretched(stretched);
+        let (id, known) = robot.mission.notices().announced().cloned().expect("it knows the task");
+        robot
+            .mission
+            .notices_mut()
+            .follow(Some((id, Shared::new(Announcement { again, ..(*known).clone() }))));
         let standstill = Standstill { remaining: 1.0, saturated: None, near_other_tree };
         let next = robot.announcement_to_others(Some(standstill));
         next.map(|next| (next.eligible.iter().collect::<Vec<_>>(), next.again))
@@ -399,11 +403,12 @@ fn who_has_been_asked_is_not_asked_again_because_the_team_is_in_another_tree() {
     let next = |eligible: &[usize], led_from: Option<usize>| {
         let mut robot = asked(east(3.0));
         robot.mission.is_led_from(led_from);
-        let (id, known) = robot.mission.announced().cloned().expect("it knows the task");
+        let (id, known) = robot.mission.notices().announced().cloned().expect("it knows the task");
         let eligible = Arc::new(eligible.iter().copied().collect());
         robot
             .mission
-            .goes_by(Some((id, Shared::new(Announcement { eligible, ..(*known).clone() }))));
+            .notices_mut()
+            .follow(Some((id, Shared::new(Announcement { eligible, ..(*known).clone() }))));
         let mut election = Election::new(robot.notice_id());
         election.place(4, Some(Bid { rank: 0, merit: -1, economy: 0 }));
         robot.ballot.takes_part_in(election);
@@ -421,17 +426,17 @@ fn all_are_asked_with_stretched_links_after_the_others_have_been() {
     let mut hall = hall();
     hall.access_point.push(AccessPoint { position: east(3.0).into() });
     let mut robot = robot_of(&hall);
-    robot.mission.stretch();
+    robot.mission.notices_mut().stretch();
     robot.mission.is_led_from(Some(0));
     robot.knows_task(east(3.0));
     let mut election = Election::new(robot.notice_id());
     election.place(4, Some(Bid { rank: 0, merit: -1, economy: 0 }));
     robot.ballot.takes_part_in(election);
     let mut asked = Vec::new();
-    let (id, known) = robot.mission.announced().cloned().expect("it knows the task");
+    let (id, known) = robot.mission.notices().announced().cloned().expect("it knows the task");
     let mut known = Announcement { eligible: Arc::new((0..2).collect()), ..(*known).clone() };
     while asked.len() < 9 {
-        robot.mission.goes_by(Some((id, Shared::new(known))));
+        robot.mission.notices_mut().follow(Some((id, Shared::new(known))));
         let Some(next) = robot.announcement_to_others(None) else { break };
         asked.push((next.eligible.iter().collect::<Vec<_>>(), next.stretched));
         known = next;
@@ -467,14 +472,14 @@ fn a_robot_that_hears_of_the_leader_first_knows_in_whose_tree_that_was_elected()
 fn once_links_are_stretched_all_are_asked_once_more() {
     let are_asked = |stretched: bool, has_bid: bool, were_stretched: bool| {
         let mut robot = asked(east(3.0));
-        let (id, known) = robot.mission.announced().cloned().expect("it knows the task");
+        let (id, known) = robot.mission.notices().announced().cloned().expect("it knows the task");
         let known = Announcement { stretched: were_stretched, ..(*known).clone() };
-        robot.mission.goes_by(Some((id, Shared::new(known))));
+        robot.mission.notices_mut().follow(Some((id, Shared::new(known))));
         let bid = Bid { rank: 0, merit: -1, economy: 0 };
         let mut election = Election::new(robot.notice_id());
         election.place(4, has_bid.then_some(bid));
         robot.ballot.takes_part_in(election);
-        robot.mission.stretches(stretched);
+        robot.mission.notices_mut().set_stretched(stretched);
         robot.announcement_to_others(None).is_some_and(|next| next.stretched)
     };
     assert!(are_asked(true, true, false));
@@ -532,9 +537,10 @@ fn a_leader_that_takes_its_post_along_is_not_bound_by_what_depends_on_it() {
 fn where_no_post_can_come_along_the_robot_that_asked_gives_the_task_up() {
     let ends = |asked: bool, bid: Option<Bid>| {
         let mut robot = asked_with_post(north(1.0), fixed(30, 13));
-        let (mut id, task) = robot.mission.announced().cloned().expect("it knows the task");
+        let (mut id, task) =
+            robot.mission.notices().announced().cloned().expect("it knows the task");
         id.issuer = if asked { 0 } else { 4 };
-        robot.mission.goes_by(Some((id, task)));
+        robot.mission.notices_mut().follow(Some((id, task)));
         let mut election = Election::new(robot.notice_id());
         (0..ROBOTS).for_each(|other| election.place(other, bid.filter(|_| other == 3)));
         robot.mission.is(Mission::LeaderElection(LeaderElection));

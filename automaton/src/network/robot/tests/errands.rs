@@ -50,8 +50,8 @@ fn a_team_whose_task_is_taken_back_is_dissolved() {
     let mut robot = robot();
     robot.holds(primary(0, None, 1));
     robot.advances_to(east(3.0));
-    let notice = Shared::new(Notice::Withdrawn { task: 0 });
-    robot.mission.is_told(robot.mission.bulletin().superseding(ROBOTS, notice));
+    let notice = Notice::Withdrawn { task: 0 };
+    robot.mission.notices_mut().supersede(ROBOTS, notice);
     robot.measures();
     assert!(robot.jump_mission().expect("guards have values"));
     assert_eq!((robot.phase(), robot.duty.location()), (Phase::Idle, Activity::Relay));
@@ -65,11 +65,11 @@ fn after_the_end(notice: Notice) -> Phase {
     let mut robot = robot();
     robot.holds(redundant(0, 0));
     let end = Notice::Ended { outcome: Outcome::Blocked, reason: Arc::default(), task: Some(0) };
-    robot.mission.is_told(robot.mission.bulletin().next(1, Shared::new(end)));
+    robot.mission.notices_mut().issue(1, end);
     robot.measures();
     assert!(robot.jump_mission().expect("guards have values"));
     assert_eq!(robot.phase(), Phase::Ended);
-    robot.mission.is_told(robot.mission.bulletin().superseding(ROBOTS, Shared::new(notice)));
+    robot.mission.notices_mut().supersede(ROBOTS, notice);
     robot.measures();
     robot.jump_mission().expect("guards have values");
     robot.phase()

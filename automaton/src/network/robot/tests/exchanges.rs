@@ -38,7 +38,7 @@ impl Scene {
             let mut robot = Robot::new(id, place, 0.1, Arc::clone(site));
             robot.schedule.is_in(NOW);
             robot.body.waits(12);
-            robot.mission.stretches(stretched);
+            robot.mission.notices_mut().set_stretched(stretched);
             robot.holds(post_of(id, link));
             robot.advances_to(east(4.0));
             robot.hears(access_point(center));

@@ -162,7 +162,7 @@ fn robots_take_posts_as_the_lemma_says() {
         let ended =
             Notice::Ended { task: None, outcome: Outcome::Serviced, reason: Arc::default() };
         let (advance, serviced) = (Notice::Advance { joined: None }, Notice::Serviced { task: 0 });
-        let newest = robot.mission.bulletin();
+        let newest = robot.mission.notices().bulletin();
         let next = |notice| newest.next(1, Shared::new(notice));
         let overtaking = newest.superseding(1, Shared::new(advance.clone()));
         let known = newest.clone();
@@ -179,7 +179,7 @@ fn robots_take_posts_as_the_lemma_says() {
                 continue;
             }
             let mut robot = robot.clone();
-            robot.mission.is_told(bulletin);
+            robot.mission.notices_mut().take_up(bulletin);
             if case.given_up[place] {
                 let behind = Post { parent: None, ..fixed(id_at(place).0, 0) };
                 robot.hears(beacon(5, west(0.3), behind, &[]));
@@ -189,7 +189,7 @@ fn robots_take_posts_as_the_lemma_says() {
             if kind == ENDED && robot.duty.place().is_some() {
                 let task =
                     Notice::Task(Shared::new(robot.announcement().cloned().expect("it knows one")));
-                robot.mission.is_told(robot.mission.bulletin().superseding(1, Shared::new(task)));
+                robot.mission.notices_mut().supersede(1, task);
                 robot.measures();
                 robot.jump_once().expect("its guards have values");
                 assert!(robot.duty.place().is_none(), "the robot leaves Σ: {case:?}");

@@ -213,20 +213,22 @@ impl Robot {
             last_resort: None,
         };
         let announcement = Shared::new(announcement);
-        self.mission.goes_by(Some((self.notice_id(), announcement)));
+        let id = self.notice_id();
+        self.mission.notices_mut().follow(Some((id, announcement)));
     }
 
     /// The task has been announced as a last resort.
     fn knows_last_resort(&mut self) {
-        let (id, known) = self.mission.announced().cloned().expect("it knows the task");
+        let (id, known) = self.mission.notices().announced().cloned().expect("it knows the task");
         let last_resort = Some(Arc::new("too few".to_owned()));
         self.mission
-            .goes_by(Some((id, Shared::new(Announcement { last_resort, ..(*known).clone() }))));
+            .notices_mut()
+            .follow(Some((id, Shared::new(Announcement { last_resort, ..(*known).clone() }))));
     }
 
     /// What it is told by the newest notice.
     fn is_told(&mut self, notice: Notice) {
-        self.mission.is_told(self.mission.bulletin().next(1, Shared::new(notice)));
+        self.mission.notices_mut().issue(1, notice);
     }
 
     /// It measures what its guards ask of it.

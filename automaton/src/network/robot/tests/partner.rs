@@ -276,7 +276,7 @@ fn parked_and_mover() -> (Robot, Beacon) {
     let duty = holding(primary(30, None, 13), west(BESIDE));
     let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
     mover.offer = Some(Offer { to: 0, number: 1, duty });
-    mover.announced = robot.mission.announced().cloned();
+    mover.announced = robot.mission.notices().announced().cloned();
     (robot, mover)
 }
 
@@ -430,7 +430,8 @@ fn a_member_that_stands_behind_is_a_partner() {
         let duty = holding(primary(30, None, 31), west(BESIDE));
         let mut mover = beacon(1, west(BESIDE), primary(30, None, 31), &[30, 31, 13]);
         mover.offer = Some(Offer { to: 0, number: 1, duty });
-        (mover.announced, mover.team) = (robot.mission.announced().cloned(), report(1, 5));
+        (mover.announced, mover.team) =
+            (robot.mission.notices().announced().cloned(), report(1, 5));
         robot.hears(mover);
         robot.may_be_relieved()
     };
@@ -451,7 +452,10 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
     let away = |ways: f64| relieved(&|_, mover| mover.position = west(ways * CLEARANCE));
     assert!(away(4.0 - LITTLE) && !away(4.0 + LITTLE), "it is too far away");
     assert!(!relieved(&|_, mover| mover.announced = None), "it goes by no announcement");
-    assert!(!relieved(&|robot, _| robot.mission.goes_by(None)), "this one goes by none");
+    assert!(
+        !relieved(&|robot, _| robot.mission.notices_mut().follow(None)),
+        "this one goes by none"
+    );
     assert!(
         !relieved(&|robot, _| robot
             .changes

@@ -135,7 +135,7 @@ fn the_post_of_a_bound_leader_is_attached_past_its_parent_too() {
 fn any_other_tree_will_do_once_links_are_as_long_as_they_get() {
     let is_near = |stretched: bool, root: usize| {
         let mut robot = holder(Strategy::Eager);
-        robot.mission.stretches(stretched);
+        robot.mission.notices_mut().set_stretched(stretched);
         let extended =
             |way: Lineage, post: u32| way.extended_by(PostId(post)).expect("they differ");
         let way = [42, 41, 40].into_iter().fold(Lineage::of_access_point(root), extended);

@@ -47,7 +47,8 @@ fn the_first_of_the_team_is_followed_by_nobody() {
     robot.holds(fixed(30, 13));
     assert!(!robot.is_first(), "it is not of the team");
     let mut anew = leader();
-    let announced = anew.mission.announced().cloned().map(|(id, task)| (id.next(6), task));
+    let announced =
+        anew.mission.notices().announced().cloned().map(|(id, task)| (id.next(6), task));
     let of_before =
         Beacon { announced, ..beacon(2, west(0.5), primary(32, Some(30), 13), &[32, 13]) };
     anew.hears(of_before);
@@ -274,7 +275,7 @@ fn a_link_of_the_tree_is_limited_by_what_hangs_on_it() {
     assert_eq!(limits, [(5, build), (1, build), (2, hard)]);
     robot.holds(fixed(30, 13));
     assert_eq!(robot.parent_link().map(|link| link.limit), Some(hard));
-    robot.mission.stretches(true);
+    robot.mission.notices_mut().set_stretched(true);
     assert!(robot.hard_length() > hard && robot.build_length() > build);
 }
 
@@ -371,7 +372,7 @@ fn a_service_that_has_been_superseded_is_announced_again() {
     let mut robot = robot();
     robot.knows_task(east(3.0));
     robot.mission.has_accomplished(Some(robot.notice_id()));
-    robot.mission.is_told(robot.mission.bulletin().superseding(ROBOTS, Shared::new(Notice::Quiet)));
+    robot.mission.notices_mut().supersede(ROBOTS, Notice::Quiet);
     robot.is_told(call());
     assert!(!robot.facts_now().service_unheard, "the task has been announced again since");
 }

@@ -75,8 +75,18 @@ impl Ballot {
 
     /// Counts one more round; returns whether a wait is over, where news takes at most `longest_wait` rounds.
     pub const fn count_round(&mut self, longest_wait: usize) -> bool {
-        self.waited_rounds += 1;
+        self.pass_round();
         self.waited_rounds == longest_wait + 1 || self.waited_rounds == 2 * longest_wait
+    }
+
+    /// A round of the election is over.
+    pub const fn pass_round(&mut self) {
+        self.waited_rounds += 1;
+    }
+
+    /// For how many rounds the election has been under way: the round in which it began does not count.
+    pub const fn rounds_passed(&self) -> usize {
+        self.waited_rounds.saturating_sub(1)
     }
 
     /// Whether the robot has taken part for this many rounds.

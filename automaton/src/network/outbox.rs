@@ -55,3 +55,11 @@ impl Outbox {
         self.last_beacon.is_told()
     }
 }
+
+#[cfg(test)]
+impl Outbox {
+    /// The reports that wait.
+    pub fn take_reports(&mut self) -> Vec<MissionEvent> {
+        std::mem::take(&mut self.log)
+    }
+}

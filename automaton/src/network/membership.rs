@@ -9,7 +9,7 @@ use pleach_continuous::Point;
 use pleach_discrete::network::NodeId;
 
 use crate::network::access_point::PATIENCE;
-use crate::network::roll::{Roll, Sightings, Wreck};
+use crate::network::roll::{Absent, Roll, Sightings, Wreck};
 
 /// A roll that is called this many control periods after a robot was received last says whether it takes part: the
 /// first access point misses it after its patience, and reports of it may be as old when they arrive.
@@ -55,6 +55,14 @@ impl Membership {
             self.missing.retain(|lost| lost.heard_in.saturating_add(TOLD_AFTER) > newest);
         }
         differs
+    }
+
+    /// The first access point calls the roll.
+    pub fn call_roll(&mut self, period: u32, absent: Absent) {
+        if *self.roll.absent != absent {
+            self.roll.absent = Arc::new(absent);
+        }
+        self.roll.called = period;
     }
 
     /// The newest roll.
@@ -164,7 +172,7 @@ impl Membership {
     }
 
     /// The newest roll names these as absent.
-    pub fn lacks(&mut self, absent: crate::network::roll::Absent) {
+    pub fn lacks(&mut self, absent: Absent) {
         self.roll.absent = Arc::new(absent);
     }
 
@@ -184,7 +192,6 @@ mod tests {
     use pleach_discrete::network::IdSet;
 
     use super::*;
-    use crate::network::roll::Absent;
 
     fn at(x: f64) -> Point {
         Point::new(x, 0.0)
