@@ -17,6 +17,7 @@ use crate::coordinates::Coordinates;
 use crate::coverage::tally::Tally;
 use crate::flow::Flow;
 use crate::law::Command;
+use crate::lists::mapped;
 use crate::located::{Holds, Place};
 use crate::observed::{self, Exclusion, Watch};
 use crate::outline::range_of;
@@ -79,6 +80,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) parameters: Vec<(String, f64)>,
     /// Names of formulas of coordinates and parameters, with these.
     pub(crate) signals: Vec<Signal>,
+    /// By name the nodes of locations that drawings show together, those with more of them first.
+    pub(crate) superstates: Vec<(&'static str, Vec<usize>)>,
     /// The events that are taken at samples.
     pub(crate) samplings: Vec<(E, Sampling)>,
     /// The coordinates of which no other component may say how they move.
@@ -188,6 +191,12 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// The table: a row for every transition.
     pub fn table(&self) -> TransitionTable<'_, L, E> {
         TransitionTable::new(&self.rows)
+    }
+
+    /// The superstates that transitions leave, each with its name and its locations.
+    pub fn superstates(&self) -> impl Iterator<Item = (&'static str, Vec<L>)> {
+        let locations = |members: &[usize]| mapped(members, |&member| self.locations[member]);
+        self.superstates.iter().map(move |(name, members)| (*name, locations(members)))
     }
 
     /// The location in which a run starts.

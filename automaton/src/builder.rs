@@ -8,7 +8,7 @@ use std::mem::take;
 use std::ops::RangeInclusive;
 
 use petgraph::graph::DiGraph;
-use pleach_discrete::{Event, Location, Row, TransitionTable};
+use pleach_discrete::{Event, Location, Row, Source, Superstate, TransitionTable};
 use pleach_guards::{Expression, Guard, Predicate, Substitution, Valuation};
 
 pub use error::BuildError;
@@ -70,7 +70,18 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         for row in table.rows() {
             builder.add_row(row);
         }
+        table.superstates().for_each(|superstate| builder.note(&superstate));
         builder
+    }
+
+    /// Drawings show this superstate.
+    fn note(&mut self, superstate: &Superstate<L>) {
+        let members = superstate.members().iter();
+        let members = members.map(|&member| number_of(member, &mut self.locations)).collect();
+        let known = (superstate.name(), members);
+        if !self.parts.superstates.contains(&known) {
+            self.parts.superstates.push(known);
+        }
     }
 
     fn add_row(&mut self, row: &Row<L, E>) {
@@ -87,14 +98,17 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         Given { guard, assignments, reset: number }
     }
 
-    /// What the row from one location on one event carries over, and when.
+    /// What the row from one location on one event carries over, and when; or the rows from each location of a
+    /// superstate.
     pub fn carried_out(mut self, transfer: Transfer<L, E, S>) -> Self {
         let Transfer { source, event, target, guard, reset } = transfer;
-        let source = number_of(source, &mut self.locations);
-        let event = number_of(event, &mut self.events);
-        let target = number_of(target, &mut self.locations);
         let given = self.given(guard, reset);
-        self.parts.transfers.push(([source, event, target], given));
+        let event = number_of(event, &mut self.events);
+        for &location in source.locations() {
+            let ends = [location, target.unwrap_or(location)];
+            let [source, target] = ends.map(|end| number_of(end, &mut self.locations));
+            self.parts.transfers.push(([source, event, target], given.clone()));
+        }
         self
     }
 
@@ -106,12 +120,20 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         self
     }
 
-    /// One more transition, with a guard and a reset of its own. Several may leave one location on
-    /// one event; where the guards of more than one hold, priority and order of declaration decide.
+    /// One more transition, with a guard and a reset of its own, or [one for each location](crate::from_any) of a
+    /// superstate. Several may leave one location on one event; where the guards of more than one hold, priority and
+    /// order of declaration decide.
     pub fn transition(mut self, edge: Edge<L, E, S>) -> Self {
-        let given = self.given(edge.guard, edge.reset);
-        self.parts.edges.push((self.parts.rows.len(), given));
-        self.add_row(&edge.row);
+        let Edge { source, event, target, urgency, priority, guard, reset } = edge;
+        let given = self.given(guard, reset);
+        for &location in source.locations() {
+            self.parts.edges.push((self.parts.rows.len(), given.clone()));
+            let target = target.unwrap_or(location);
+            self.add_row(&Row { source: location, event, target, urgency, priority });
+        }
+        if let Source::Superstate(superstate) = source {
+            self.note(&superstate);
+        }
         self
     }
 
@@ -145,6 +167,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             graph: self.graph(&draft)?,
             modes: self.modes(&draft),
             leaving: draft.leaving(),
+            superstates: draft.superstates(),
             rows: self.rows(),
             initial: self.locations[self.parts.initial],
             locations: chosen(&self.locations, &draft.location_order),

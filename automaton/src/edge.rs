@@ -1,6 +1,6 @@
 //! Transitions as one writes them: from where, on which event, to where, how urgently, when.
 
-use pleach_discrete::{Row, Urgency};
+use pleach_discrete::{Row, Source, Superstate, Urgency};
 use pleach_guards::Guard;
 
 use crate::reset::Reset;
@@ -29,38 +29,76 @@ use crate::reset::Reset;
 /// # let _: Edge<Motion, Contact, Ball> = bounce;
 /// ```
 pub fn from<L>(location: L) -> Departure<L> {
-    Departure { source: location }
+    Departure { source: Source::Location(location) }
+}
+
+/// Begins the transition that leaves each location of a superstate: in all of them it has the same guard and does the
+/// same.
+///
+/// ```
+/// use pleach_automaton::{Automaton, Edge, coordinates, from, from_any};
+/// use pleach_discrete::{Superstate, vocabulary};
+///
+/// vocabulary! {
+///     enum Pump: Location { Off = "off", Filling = "filling", Draining = "draining" }
+///     enum Command: Event { Full = "full", Stopped = "stopped" }
+/// }
+/// coordinates! { struct Tank { level = "l" } }
+/// use {Command::{Full, Stopped}, Pump::{Draining, Filling, Off}};
+///
+/// const RUNNING: Superstate<Pump> = Superstate::new("running", &[Filling, Draining]);
+/// let Tank { level } = Tank::coordinates();
+/// let pump = Automaton::starting_in(Filling)
+///     .initially(Tank { level: 0.0 })
+///     .flow(Filling, level.rate(1.0))
+///     .flow(Draining, level.rate(-2.0))
+///     .transition(from(Filling).on(Full).to(Draining).must(level.at_least(1.0)))
+///     .transition(from_any(RUNNING).on(Stopped).to(Off).must(level.at_most(0.5)).priority(1))
+///     .build()?;
+///
+/// assert_eq!(pump.table().rows().len(), 3);
+/// assert!(pump.superstates().eq([("running", vec![Filling, Draining])]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn from_any<L>(superstate: Superstate<L>) -> Departure<L> {
+    Departure { source: Source::Superstate(superstate) }
 }
 
 /// A transition that says where it begins; see [`from`].
 #[must_use = "say on which event"]
 #[derive(Clone, Copy, Debug)]
-pub struct Departure<L> {
-    source: L,
+pub struct Departure<L: 'static> {
+    source: Source<L>,
 }
 
 /// A transition that says where it begins and on which event; see [`from`].
 #[must_use = "say where it leads"]
 #[derive(Clone, Copy, Debug)]
-pub struct Trigger<L, E> {
-    source: L,
+pub struct Trigger<L: 'static, E> {
+    source: Source<L>,
     event: E,
 }
 
 /// A transition that lacks its urgency and guard; see [`from`].
 #[must_use = "say how urgent it is: may, must or at once"]
 #[derive(Clone, Copy, Debug)]
-pub struct Arrow<L, E> {
-    source: L,
+pub struct Arrow<L: 'static, E> {
+    source: Source<L>,
     event: E,
-    target: L,
+    /// None: the location stays the same.
+    target: Option<L>,
 }
 
 /// A transition with everything that it needs; see [`from`].
 #[must_use = "give it to a builder"]
 #[derive(Clone, Debug)]
-pub struct Edge<L, E, S> {
-    pub(crate) row: Row<L, E>,
+pub struct Edge<L: 'static, E, S> {
+    pub(crate) source: Source<L>,
+    pub(crate) event: E,
+    /// None: the location stays the same.
+    pub(crate) target: Option<L>,
+    pub(crate) urgency: Urgency,
+    pub(crate) priority: u8,
     pub(crate) guard: Guard,
     pub(crate) reset: Reset<S>,
 }
@@ -75,7 +113,12 @@ impl<L> Departure<L> {
 impl<L, E> Trigger<L, E> {
     /// To this location.
     pub fn to(self, location: L) -> Arrow<L, E> {
-        Arrow { source: self.source, event: self.event, target: location }
+        Arrow { source: self.source, event: self.event, target: Some(location) }
+    }
+
+    /// To the location in which it is taken.
+    pub fn stay(self) -> Arrow<L, E> {
+        Arrow { source: self.source, event: self.event, target: None }
     }
 }
 
@@ -97,12 +140,18 @@ impl<L, E> Arrow<L, E> {
 
     fn when<S>(self, urgency: Urgency, guard: Guard) -> Edge<L, E, S> {
         let Arrow { source, event, target } = self;
-        let row = Row { source, event, target, urgency, priority: 0 };
-        Edge { row, guard, reset: Reset::identity() }
+        Edge { source, event, target, urgency, priority: 0, guard, reset: Reset::identity() }
     }
 }
 
 impl<L, E, S> Edge<L, E, S> {
+    /// The transition of this row.
+    pub(crate) fn of_row(row: Row<L, E>, guard: Guard, reset: Reset<S>) -> Self {
+        let Row { source, event, target, urgency, priority } = row;
+        let source = Source::Location(source);
+        Edge { source, event, target: Some(target), urgency, priority, guard, reset }
+    }
+
     /// What it does to the state; without this, nothing.
     pub fn then(self, reset: impl Into<Reset<S>>) -> Self {
         Edge { reset: reset.into(), ..self }
@@ -111,7 +160,7 @@ impl<L, E, S> Edge<L, E, S> {
     /// Which goes first where several could be taken: 0, which is the default, before 1, and so
     /// on. Of transitions of one priority the one given first goes first; a check reports them.
     pub fn priority(mut self, priority: u8) -> Self {
-        self.row.priority = priority;
+        self.priority = priority;
         self
     }
 }

@@ -59,7 +59,7 @@ pub use composition::{
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
-pub use edge::{Edge, from};
+pub use edge::{Edge, from, from_any};
 pub use executor::{
     Ending, Executor, InvalidLimit, LastJump, Limit, Observer, Reason, Round, Sliding, System,
 };

@@ -70,7 +70,7 @@
 
 use std::ops::Deref;
 
-use pleach_discrete::{Event, Location};
+use pleach_discrete::{Event, Location, Source, Superstate};
 use pleach_guards::{EvaluationError, Guard, Valuation};
 
 use crate::reset::Reset;
@@ -139,10 +139,11 @@ pub trait Holds<P: Place> {
 /// The locations are those of the function's types. The function changes nothing: what it returns
 /// and the effects that it notes are carried out afterwards.
 #[derive(Clone, Debug)]
-pub struct Transfer<L, E, S> {
-    pub(crate) source: L,
+pub struct Transfer<L: 'static, E, S> {
+    pub(crate) source: Source<L>,
     pub(crate) event: E,
-    pub(crate) target: L,
+    /// None: the location stays the same.
+    pub(crate) target: Option<L>,
     pub(crate) guard: Guard,
     pub(crate) reset: Reset<S>,
 }
@@ -185,8 +186,71 @@ impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
             let data = A::of(state.current()).ok_or(A::LOCATION)?;
             carry_over(data, state, effects).map(B::into_place).ok_or(B::LOCATION)
         };
+        let (source, target) = (Source::Location(A::LOCATION), Some(B::LOCATION));
         let reset = entering(name, Box::new(place_after));
-        Transfer { source: A::LOCATION, event, target: B::LOCATION, guard: guard.into(), reset }
+        Transfer { source, event, target, guard: guard.into(), reset }
+    }
+
+    /// As [`new`](Self::new), from each location of a superstate, whose data are read as the enum of places.
+    pub fn from_any<P, B>(
+        superstate: Superstate<L>,
+        event: E,
+        guard: impl Into<Guard>,
+        name: &str,
+        carry_over: impl Fn(&P, &S, &mut S::Effects) -> B + Send + Sync + 'static,
+    ) -> Self
+    where
+        P: Place<Location = L>,
+        B: DataOf<P>,
+        S: Holds<P> + Valuation,
+    {
+        let total = move |place: &P, state: &S, effects: &mut S::Effects| {
+            Some(carry_over(place, state, effects))
+        };
+        Transfer::from_any_where_known(superstate, event, guard, name, total)
+    }
+
+    /// As [`where_known`](Self::where_known), from each location of a superstate.
+    pub fn from_any_where_known<P, B>(
+        superstate: Superstate<L>,
+        event: E,
+        guard: impl Into<Guard>,
+        name: &str,
+        carry_over: impl Fn(&P, &S, &mut S::Effects) -> Option<B> + Send + Sync + 'static,
+    ) -> Self
+    where
+        P: Place<Location = L>,
+        B: DataOf<P>,
+        S: Holds<P> + Valuation,
+    {
+        let place_after = move |state: &S, effects: &mut S::Effects| {
+            carry_over(state.current(), state, effects).map(B::into_place).ok_or(B::LOCATION)
+        };
+        let (source, target) = (Source::Superstate(superstate), Some(B::LOCATION));
+        let reset = entering(name, Box::new(place_after));
+        Transfer { source, event, target, guard: guard.into(), reset }
+    }
+
+    /// From each location of a superstate to itself, with the same data: only effects follow. None is an error, as in
+    /// [`where_known`](Self::where_known).
+    pub fn staying_in<P>(
+        superstate: Superstate<L>,
+        event: E,
+        guard: impl Into<Guard>,
+        name: &str,
+        act: impl Fn(&P, &S, &mut S::Effects) -> Option<()> + Send + Sync + 'static,
+    ) -> Self
+    where
+        P: Place<Location = L> + Clone,
+        S: Holds<P> + Valuation,
+    {
+        let place_after = move |state: &S, effects: &mut S::Effects| {
+            let place: &P = state.current();
+            act(place, state, effects).map(|()| place.clone()).ok_or(place.location())
+        };
+        let source = Source::Superstate(superstate);
+        let reset = entering(name, Box::new(place_after));
+        Transfer { source, event, target: None, guard: guard.into(), reset }
     }
 }
 

@@ -25,6 +25,8 @@ pub(crate) struct Outline<'a> {
     /// In the order of the table.
     pub(crate) transitions: Vec<Transition<'a>>,
     pub(crate) initial: usize,
+    /// By name the locations of each superstate, those with more of them first.
+    pub(crate) superstates: &'a [(&'static str, Vec<usize>)],
     /// The state in which runs start, where the model says it.
     pub(crate) initial_state: Option<&'a dyn Valuation>,
     /// The names of all variables, where the type of the state tells.
@@ -55,6 +57,23 @@ pub(crate) struct Transition<'a> {
     pub(crate) priority: u8,
     pub(crate) guard: &'a Guard,
     pub(crate) effect: Effect<'a>,
+}
+
+/// Transitions as one says them: one, or those that leave all locations of a superstate and read alike.
+#[derive(Clone, Debug)]
+pub(crate) struct Arrow {
+    pub(crate) source: Source,
+    /// The location that is entered; none: the location stays the same.
+    pub(crate) target: Option<usize>,
+    /// The transitions, at least one.
+    pub(crate) transitions: Vec<usize>,
+}
+
+/// Where an arrow begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    Location(usize),
+    Superstate(usize),
 }
 
 /// A flow: its rates, or its name.
@@ -102,6 +121,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
             events: names_of(&self.events, E::name),
             transitions,
             initial: place_of(&self.locations, self.initial).unwrap_or_default(),
+            superstates: &self.superstates,
             initial_state: self.initial_state.as_ref().map(|state| state as &dyn Valuation),
             known: self.known.as_deref(),
             parameters: &self.parameters,
@@ -121,6 +141,60 @@ impl Outline<'_> {
         (!(self.parameters.is_empty() && wiring.is_empty())).then(|| Substitution::new(formulas))
     }
 
+    /// The transitions in the order of the table, with those together that leave a superstate.
+    pub(crate) fn arrows(&self) -> Vec<Arrow> {
+        let mut arrows = Vec::new();
+        let mut is_shown = vec![false; self.transitions.len()];
+        for (first, transition) in self.transitions.iter().enumerate() {
+            if is_shown[first] {
+                continue;
+            }
+            let mut superstates = self.superstates.iter().enumerate();
+            let together = superstates.find_map(|(number, (_, members))| {
+                Some((number, self.alike(transition, members, &is_shown)?))
+            });
+            let arrow = match together {
+                None => Arrow {
+                    source: Source::Location(transition.source),
+                    target: Some(transition.target),
+                    transitions: vec![first],
+                },
+                Some((number, transitions)) => {
+                    let stay = transitions.iter().all(|&at| self.transitions[at].is_loop());
+                    let target = (!stay).then_some(transition.target);
+                    Arrow { source: Source::Superstate(number), target, transitions }
+                }
+            };
+            arrow.transitions.iter().for_each(|&other| is_shown[other] = true);
+            arrows.push(arrow);
+        }
+        arrows
+    }
+
+    /// The transitions that read like this one, one from each of these locations of which one is its source.
+    fn alike(
+        &self,
+        transition: &Transition<'_>,
+        members: &[usize],
+        is_shown: &[bool],
+    ) -> Option<Vec<usize>> {
+        if !members.contains(&transition.source) {
+            return None;
+        }
+        let from = |member: usize| {
+            let mut others = self.transitions.iter().enumerate();
+            let reads_alike = |(number, other): &(usize, &Transition<'_>)| {
+                other.source == member && !is_shown[*number] && transition.reads_like(other)
+            };
+            others.find(reads_alike).map(|(number, _)| number)
+        };
+        let alike: Vec<usize> =
+            members.iter().map(|&member| from(member)).collect::<Option<_>>()?;
+        let mut ends = alike.iter().map(|&at| &self.transitions[at]);
+        let stay = ends.clone().all(|it| it.is_loop());
+        (stay || ends.all(|it| it.target == transition.target)).then_some(alike)
+    }
+
     /// The range that the model declares for a variable; without a declaration, all numbers.
     pub(crate) fn range(&self, name: &str) -> RangeInclusive<f64> {
         range_of(self.ranges, name)
@@ -132,6 +206,19 @@ impl Outline<'_> {
 
     pub(crate) fn guards(&self) -> impl Iterator<Item = &Predicate> {
         self.transitions.iter().map(|transition| transition.guard.predicate())
+    }
+}
+
+impl Transition<'_> {
+    fn is_loop(&self) -> bool {
+        self.source == self.target
+    }
+
+    /// Whether it differs from another in nothing but its ends.
+    fn reads_like(&self, other: &Transition<'_>) -> bool {
+        (self.event, self.urgency, self.priority) == (other.event, other.urgency, other.priority)
+            && self.guard == other.guard
+            && self.effect.to_string() == other.effect.to_string()
     }
 }
 

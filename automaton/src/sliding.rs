@@ -160,7 +160,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
             let (event, target, priority) = (row.event, Beside(surface.sides[side]), 0);
             let row = Row { source: here, event, target, urgency: Urgency::Must, priority };
             let (guard, reset) = (surface.exit(side).into(), surface.off(side));
-            builder = builder.transition(Edge { row, guard, reset });
+            builder = builder.transition(Edge::of_row(row, guard, reset));
         }
         for (number, row) in self.rows.iter().enumerate() {
             if !surface.sides.contains(&row.source) || surface.crossings.contains(&number) {
@@ -180,7 +180,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         let Row { event, urgency, priority, .. } = self.rows[number];
         let transition = &self.graph[petgraph::graph::EdgeIndex::new(number)];
         let row = Row { source, event, target, urgency, priority };
-        Edge { row, guard: transition.guard.clone(), reset: transition.reset.clone() }
+        Edge::of_row(row, transition.guard.clone(), transition.reset.clone())
     }
 }
 

@@ -5,6 +5,8 @@
 //! to which, how urgently, and in which order if several transitions could be taken. Running,
 //! drawing, checking and proving read the same table.
 //!
+//! What leaves several locations alike is declared once, from a [`Superstate`].
+//!
 //! No continuous value gets here, a table is read without allocation, and every order is total; that
 //! keeps the layer within reach of exhaustive checks and proofs.
 //!
@@ -28,10 +30,12 @@
 
 pub mod location;
 pub mod network;
+pub mod superstate;
 pub mod table;
 pub mod urgency;
 pub mod vocabulary;
 
 pub use location::{Event, Location};
+pub use superstate::{Rule, Source, Superstate, from, from_any};
 pub use table::{InvalidTransition, Row, TransitionTable, first_mentions};
 pub use urgency::Urgency;

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt::{self, Write};
 
 use crate::location::{Event, Location};
+use crate::superstate::{Rule, Source, Superstate};
 use crate::urgency::Urgency;
 
 /// One transition: on `event`, from `source` to `target`.
@@ -27,14 +28,21 @@ pub struct Row<L, E> {
 /// meant, the one of the smallest priority number comes first, and of those the one declared
 /// first: a total order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TransitionTable<'a, L, E> {
+pub struct TransitionTable<'a, L: 'static, E> {
+    /// Those that the rows are written out of, if it is declared so.
+    rules: &'a [Rule<L, E>],
     rows: &'a [Row<L, E>],
 }
 
-impl<'a, L, E> TransitionTable<'a, L, E> {
+impl<'a, L: 'static, E> TransitionTable<'a, L, E> {
     /// The table of these rows.
     pub const fn new(rows: &'a [Row<L, E>]) -> Self {
-        TransitionTable { rows }
+        TransitionTable { rules: &[], rows }
+    }
+
+    /// The table of these rules, which the rows are written out of; see [`transitions!`](crate::transitions!).
+    pub const fn of_rules(rules: &'a [Rule<L, E>], rows: &'a [Row<L, E>]) -> Self {
+        TransitionTable { rules, rows }
     }
 
     /// The rows in the order of their declaration.
@@ -44,6 +52,15 @@ impl<'a, L, E> TransitionTable<'a, L, E> {
 }
 
 impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
+    /// The superstates that rules leave, each once.
+    pub fn superstates(&self) -> impl Iterator<Item = Superstate<L>> + use<L, E> {
+        let superstates = self.rules.iter().filter_map(|rule| match *rule.source() {
+            Source::Superstate(superstate) => Some(superstate),
+            Source::Location(_) => None,
+        });
+        first_mentions(superstates).into_iter()
+    }
+
     /// Where `event` leads from `location`.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use super::parts::{Given, Parts};
 use crate::composition::Sampling;
 use crate::flow::Rate;
 use crate::law::Command;
-use crate::lists::place_of;
+use crate::lists::{mapped, place_of};
 use crate::named::kept;
 use crate::reset::NewValue;
 
@@ -126,6 +126,7 @@ impl<'a> Draft<'a> {
     /// locations.
     pub(super) fn check(&mut self) -> Result<(), BuildError> {
         self.check_table()?;
+        self.check_superstates()?;
         self.match_transfers()?;
         self.check_parts()?;
         self.check_intervals()?;
@@ -161,6 +162,44 @@ impl<'a> Draft<'a> {
             return Err(BuildError::InitialNotInTable { location: self.locations[*initial] });
         }
         Ok(())
+    }
+
+    /// Superstates have names of their own and locations, and of two that share locations one contains the other.
+    fn check_superstates(&self) -> Result<(), BuildError> {
+        for (number, (name, members)) in self.parts.superstates.iter().enumerate() {
+            let earlier = &self.parts.superstates[..number];
+            let is_taken = self.locations.contains(name) || earlier.iter().any(|it| it.0 == *name);
+            if is_taken {
+                return Err(BuildError::SuperstateNameTaken { superstate: name });
+            }
+            if members.is_empty() {
+                return Err(BuildError::EmptySuperstate { superstate: name });
+            }
+            let includes =
+                |some: &[usize], others: &[usize]| others.iter().all(|it| some.contains(it));
+            let overlaps = |(_, other): &&(_, Vec<usize>)| {
+                members.iter().any(|member| other.contains(member))
+                    && !includes(members, other)
+                    && !includes(other, members)
+            };
+            if let Some((other, _)) = earlier.iter().find(overlaps) {
+                return Err(BuildError::SuperstatesOverlap { superstates: [other, name] });
+            }
+        }
+        Ok(())
+    }
+
+    /// By name the nodes of the locations of each superstate, those with more of them first.
+    pub(super) fn superstates(&self) -> Vec<(&'static str, Vec<usize>)> {
+        let place =
+            |&location: &usize| place_of(&self.location_order, location).unwrap_or_default();
+        let mut superstates: Vec<(&'static str, Vec<usize>)> =
+            mapped(&self.parts.superstates, |it| {
+                let (name, members) = it;
+                (*name, mapped(members, place))
+            });
+        superstates.sort_by_key(|(_, members)| std::cmp::Reverse(members.len()));
+        superstates
     }
 
     /// Finds the row of every transfer, and a transfer for every row if there are any.

@@ -34,6 +34,28 @@ pub enum BuildError {
         /// The event of the rows.
         event: &'static str,
     },
+    /// A superstate is called like a location or another superstate.
+    #[error(
+        "superstate `{superstate}` is called like a location or another superstate: rename one"
+    )]
+    SuperstateNameTaken {
+        /// The name.
+        superstate: &'static str,
+    },
+    /// A superstate has no location.
+    #[error("superstate `{superstate}` has no location: name those that it stands for")]
+    EmptySuperstate {
+        /// The name.
+        superstate: &'static str,
+    },
+    /// Two superstates share locations, and neither contains the other.
+    #[error(
+        "superstates `{}` and `{}` share locations, and each has others: divide one of them", superstates[0], superstates[1]
+    )]
+    SuperstatesOverlap {
+        /// The names.
+        superstates: [&'static str; 2],
+    },
     /// An event of the table has no guard.
     #[error("event `{event}` has no guard: say when it happens with `on`")]
     EventWithoutGuard {

@@ -17,6 +17,8 @@ use crate::signals::Signal;
 pub(super) struct Parts {
     pub(super) initial: usize,
     pub(super) rows: Vec<Row<usize, usize>>,
+    /// By name the locations that drawings show together.
+    pub(super) superstates: Vec<(&'static str, Vec<usize>)>,
     /// For all rows of an event.
     pub(super) conditions: Vec<(usize, Given)>,
     /// For the rows with these numbers.

@@ -3,11 +3,12 @@
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::Valuation;
 
-use super::sketch::Sketch;
+use super::sketch::{Contents, Sketch};
 use crate::automaton::Automaton;
+use crate::outline::Source;
 
 /// The automaton in the DOT language. Transitions that only may be taken are dashed, and those
-/// that happen at once are bold.
+/// that happen at once are bold. A superstate is a cluster, from whose border its transitions lead.
 pub fn dot<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     graph(&Sketch::of(&automaton.outline()))
 }
@@ -19,17 +20,46 @@ fn graph(sketch: &Sketch) -> String {
          edge [fontname=\"sans-serif\", fontsize=11];\n    \
          initial [shape=point];\n",
     );
-    for (number, mode) in sketch.modes.iter().enumerate() {
-        text.push_str(&format!("    l{number} [label={}];\n", quoted(&mode.lines())));
+    if !sketch.superstates.is_empty() {
+        text.push_str("    compound=true;\n    fontname=\"sans-serif\";\n");
     }
+    put_contents(sketch, None, 1, &mut text);
     text.push_str(&format!("    initial -> l{};\n", sketch.initial));
-    for link in &sketch.links {
-        let (source, target) = (link.source, link.target);
+    for arrow in &sketch.arrows {
+        let link = &sketch.links[arrow.transitions[0]];
         let (label, style) = (quoted(&link.lines()), style(link.urgency));
-        text.push_str(&format!("    l{source} -> l{target} [label={label}, style={style}];\n"));
+        let (source, mut ends) = match arrow.source {
+            Source::Location(source) => (source, String::new()),
+            Source::Superstate(number) => {
+                (sketch.superstates[number].1[0], format!(", ltail=cluster{number}"))
+            }
+        };
+        let target = arrow.target.unwrap_or(source);
+        if let (Source::Superstate(number), None) = (arrow.source, arrow.target) {
+            ends = format!(", ltail=cluster{number}, lhead=cluster{number}");
+        }
+        text.push_str(&format!(
+            "    l{source} -> l{target} [label={label}, style={style}{ends}];\n"
+        ));
     }
     text.push_str("}\n");
     text
+}
+
+/// The locations, those of a superstate in a cluster.
+fn put_contents(sketch: &Sketch, outer: Option<usize>, depth: usize, text: &mut String) {
+    let indent = "    ".repeat(depth);
+    let Contents { superstates, locations } = sketch.within(outer);
+    for number in superstates {
+        let name = quoted(&[sketch.superstates[number].0.to_owned()]);
+        text.push_str(&format!("{indent}subgraph cluster{number} {{\n{indent}    label={name};\n"));
+        put_contents(sketch, Some(number), depth + 1, text);
+        text.push_str(&format!("{indent}}}\n"));
+    }
+    for number in locations {
+        let label = quoted(&sketch.modes[number].lines());
+        text.push_str(&format!("{indent}l{number} [label={label}];\n"));
+    }
 }
 
 fn style(urgency: Urgency) -> &'static str {

@@ -3,29 +3,47 @@
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
 
-use super::sketch::Sketch;
+use super::sketch::{Contents, Sketch};
 use crate::automaton::Automaton;
 use crate::composition::Composition;
+use crate::outline::Source;
 
-/// The automaton as a Mermaid `stateDiagram-v2`.
+/// The automaton as a Mermaid `stateDiagram-v2`. A superstate is a composite state, which its transitions leave.
 pub fn mermaid<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     states(&Sketch::of(&automaton.outline()))
 }
 
 fn states(sketch: &Sketch) -> String {
     let mut text = String::from("stateDiagram-v2\n");
-    for (number, mode) in sketch.modes.iter().enumerate() {
-        for line in mode.lines() {
-            text.push_str(&format!("    l{number} : {}\n", escaped(&line)));
-        }
-    }
+    put_contents(sketch, None, 1, &mut text);
     text.push_str(&format!("    [*] --> l{}\n", sketch.initial));
-    for link in &sketch.links {
-        let (source, target) = (link.source, link.target);
-        let label = escaped(&link.lines().join(" "));
-        text.push_str(&format!("    l{source} --> l{target} : {label}\n"));
+    for arrow in &sketch.arrows {
+        let source = match arrow.source {
+            Source::Location(source) => format!("l{source}"),
+            Source::Superstate(number) => format!("s{number}"),
+        };
+        let target = arrow.target.map_or_else(|| source.clone(), |target| format!("l{target}"));
+        let label = escaped(&sketch.links[arrow.transitions[0]].lines().join(" "));
+        text.push_str(&format!("    {source} --> {target} : {label}\n"));
     }
     text
+}
+
+/// The locations, those of a superstate within it.
+fn put_contents(sketch: &Sketch, outer: Option<usize>, depth: usize, text: &mut String) {
+    let indent = "    ".repeat(depth);
+    let Contents { superstates, locations } = sketch.within(outer);
+    for number in superstates {
+        let name = escaped(sketch.superstates[number].0);
+        text.push_str(&format!("{indent}state \"{name}\" as s{number} {{\n"));
+        put_contents(sketch, Some(number), depth + 1, text);
+        text.push_str(&format!("{indent}}}\n"));
+    }
+    for number in locations {
+        for line in sketch.modes[number].lines() {
+            text.push_str(&format!("{indent}l{number} : {}\n", escaped(&line)));
+        }
+    }
 }
 
 /// The composition as a Mermaid flow chart: a frame around each component, a hexagon for each

@@ -3,7 +3,7 @@
 use pleach_discrete::Urgency;
 use pleach_guards::{Expression, Predicate, constant};
 
-use crate::outline::{self, Effect, Motion, Outline, Transition};
+use crate::outline::{self, Arrow, Effect, Motion, Outline, Transition};
 
 /// An automaton in words, without its types: diagrams only have to arrange it.
 #[derive(Clone, Debug)]
@@ -12,6 +12,10 @@ pub(crate) struct Sketch {
     pub modes: Vec<Mode>,
     /// In the order of the rows of the table.
     pub links: Vec<Link>,
+    /// The same, with those together that leave a superstate.
+    pub arrows: Vec<Arrow>,
+    /// By name the locations of each superstate, those with more of them first.
+    pub superstates: Vec<(&'static str, Vec<usize>)>,
     /// The number of the initial location.
     pub initial: usize,
     /// The state in which runs start, a variable a line; empty where the model does not say it.
@@ -75,6 +79,8 @@ impl Sketch {
         Sketch {
             modes: automaton.modes.iter().map(mode).collect(),
             links: automaton.transitions.iter().enumerate().map(link).collect(),
+            arrows: automaton.arrows(),
+            superstates: automaton.superstates.to_vec(),
             initial: automaton.initial,
             start: start(automaton),
         }
@@ -82,12 +88,45 @@ impl Sketch {
 }
 
 impl Sketch {
-    /// The transitions, those on the event that is declared first before the others.
-    pub fn links_by_event(&self) -> Vec<&Link> {
-        let mut links: Vec<&Link> = self.links.iter().collect();
-        links.sort_by_key(|link| link.event_number);
-        links
+    /// The locations in their order, but those of a superstate one after another.
+    pub fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = Vec::new();
+        for location in 0..self.modes.len() {
+            let of_location = |(_, members): &&(_, Vec<usize>)| members.contains(&location);
+            // The innermost superstate comes last.
+            let mut superstates = self.superstates.iter().rev().filter(of_location);
+            let last = superstates
+                .find_map(|(_, members)| order.iter().rposition(|it| members.contains(it)));
+            order.insert(last.map_or(order.len(), |last| last + 1), location);
+        }
+        order
     }
+
+    /// The superstates and locations that stand directly in a superstate, or in none.
+    pub fn within(&self, outer: Option<usize>) -> Contents {
+        let members = |number: usize| &self.superstates[number].1;
+        let is_in = |location: &usize| outer.is_none_or(|outer| members(outer).contains(location));
+        // Those with more locations come first: what a superstate contains comes after it.
+        let first = outer.map_or(0, |outer| outer + 1);
+        let mut superstates: Vec<usize> = Vec::new();
+        for number in first..self.superstates.len() {
+            let is_inner = superstates.iter().any(|&it| members(it).contains(&members(number)[0]));
+            if is_in(&members(number)[0]) && !is_inner {
+                superstates.push(number);
+            }
+        }
+        let is_direct = |location: &usize| {
+            is_in(location) && !superstates.iter().any(|&it| members(it).contains(location))
+        };
+        let locations = (0..self.modes.len()).filter(is_direct).collect();
+        Contents { superstates, locations }
+    }
+}
+
+/// What stands directly in a superstate, by number.
+pub(crate) struct Contents {
+    pub superstates: Vec<usize>,
+    pub locations: Vec<usize>,
 }
 
 impl Mode {

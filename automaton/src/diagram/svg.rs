@@ -21,8 +21,8 @@ pub use overview::overview_svg;
 /// The automaton as an SVG document. Transitions that only may be taken are dashed, and those that
 /// happen at once are bold.
 ///
-/// Up to four locations are drawn as boxes in a row, joined by arcs; more locations, or very many
-/// transitions, as columns that the arrows cross.
+/// Up to four locations are drawn as boxes in a row, joined by arcs; more locations, very many transitions, or
+/// superstates, as columns that the arrows cross, with a bracket over the columns of a superstate.
 pub fn svg<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     let (canvas, size) = draw(&Sketch::of(&automaton.outline()));
     canvas.finish(size)

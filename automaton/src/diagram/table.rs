@@ -5,10 +5,10 @@ use pleach_guards::Valuation;
 
 use super::sketch::{Mode, Sketch};
 use crate::automaton::Automaton;
-use crate::outline::{Outline, Transition};
+use crate::outline::{Arrow, Outline, Source, Transition};
 
 /// The automaton in Markdown: the full location × event table; below it guard and reset, a row an
-/// event where all its transitions agree, and else a row a transition; and, where time changes or
+/// event where all its transitions agree, and else a row a transition or superstate; and, where time changes or
 /// restricts anything, flow and invariant of every location, and what is chosen there at samples.
 ///
 /// The name of a guard is left out where it is the formula itself.
@@ -20,6 +20,10 @@ pub fn table<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>
 
 fn parts(automaton: &Outline<'_>) -> String {
     let mut text = format!("\n{}", markdown(&transitions(automaton)));
+    if !automaton.superstates.is_empty() {
+        text.push('\n');
+        text.push_str(&markdown(&superstates(automaton)));
+    }
     let modes = modes(&Sketch::of(automaton));
     if modes.len() > 1 {
         text.push('\n');
@@ -59,6 +63,7 @@ fn transitions(automaton: &Outline<'_>) -> Columns {
 
 /// A row of the table.
 struct Row<'a> {
+    arrow: Arrow,
     transition: &'a Transition<'a>,
     stands: Stands,
 }
@@ -66,9 +71,9 @@ struct Row<'a> {
 /// What a row stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stands {
-    /// One of the transitions on its event, which differ.
+    /// One of the arrows on its event, which differ.
     Alone,
-    /// The only transition on its event.
+    /// The only arrow on its event.
     Only,
     /// All transitions on its event.
     ForAll,
@@ -76,32 +81,43 @@ enum Stands {
 
 impl Row<'_> {
     fn way(&self, automaton: &Outline<'_>) -> String {
-        match self.stands {
-            Stands::ForAll => "all".to_owned(),
-            Stands::Alone | Stands::Only => {
-                let Transition { source, target, .. } = self.transition;
-                let [source, target] = [source, target].map(|&end| automaton.modes[end].name);
-                format!("{source} → {target}")
+        if self.stands == Stands::ForAll {
+            return "all".to_owned();
+        }
+        let name = |location: usize| automaton.modes[location].name;
+        match (self.arrow.source, self.arrow.target) {
+            (Source::Location(source), target) => {
+                format!("{} → {}", name(source), name(target.unwrap_or(source)))
+            }
+            (Source::Superstate(number), Some(target)) => {
+                format!("*{}* → {}", automaton.superstates[number].0, name(target))
+            }
+            (Source::Superstate(number), None) => {
+                format!("*{}*, stays", automaton.superstates[number].0)
             }
         }
     }
 }
 
 fn rows<'a>(automaton: &'a Outline<'a>) -> Vec<Row<'a>> {
+    let arrows = automaton.arrows();
     let mut rows = Vec::new();
     for event in 0..automaton.events.len() {
-        let is_on_it = |transition: &&Transition<'_>| transition.event == event;
-        let of_event: Vec<_> = automaton.transitions.iter().filter(is_on_it).collect();
+        let of = |arrow: &Arrow| &automaton.transitions[arrow.transitions[0]];
+        let of_event: Vec<_> = arrows.iter().filter(|arrow| of(arrow).event == event).collect();
         let stands = match &of_event[..] {
             [_] => Stands::Only,
-            [first, others @ ..] if others.iter().all(|other| is_same(first, other)) => {
+            [first, others @ ..] if others.iter().all(|other| is_same(of(first), of(other))) => {
                 Stands::ForAll
             }
             _ => Stands::Alone,
         };
         let shown = if stands == Stands::ForAll { 1 } else { of_event.len() };
-        let shown = of_event.into_iter().take(shown);
-        rows.extend(shown.map(|transition| Row { transition, stands }));
+        rows.extend(of_event.into_iter().take(shown).map(|arrow| Row {
+            arrow: arrow.clone(),
+            transition: of(arrow),
+            stands,
+        }));
     }
     rows
 }
@@ -109,6 +125,19 @@ fn rows<'a>(automaton: &'a Outline<'a>) -> Vec<Row<'a>> {
 /// Whether guard and reset read the same.
 fn is_same(one: &Transition<'_>, other: &Transition<'_>) -> bool {
     one.guard == other.guard && one.effect.to_string() == other.effect.to_string()
+}
+
+/// The superstates, with their locations.
+fn superstates(automaton: &Outline<'_>) -> Columns {
+    let all = || automaton.superstates.iter();
+    let locations = |members: &[usize]| -> String {
+        let names: Vec<&str> = members.iter().map(|&it| automaton.modes[it].name).collect();
+        names.join(", ")
+    };
+    vec![
+        ("superstate", all().map(|(name, _)| format!("*{name}*")).collect()),
+        ("locations", all().map(|(_, members)| locations(members)).collect()),
+    ]
 }
 
 /// The locations, with what is said of any of them.

@@ -6,7 +6,7 @@
 //! An elected leader with past duties is bound until it is released (L_b = 1), or services its task from its post.
 
 use super::Role;
-use crate::{Row, TransitionTable, Urgency, vocabulary};
+use crate::{Row, Superstate, TransitionTable, from, from_any, transitions, vocabulary};
 
 #[cfg(any(kani, test))]
 mod proofs;
@@ -245,32 +245,34 @@ const fn waits_as(role: Role, target: Activity) -> bool {
     }
 }
 
-const fn row(source: Activity, event: DutyEvent, target: Activity) -> Row<Activity, DutyEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
-}
+impl Activity {
+    /// The robot holds a post, and takes no part in the pursuit of the task.
+    pub const UNINVOLVED: Superstate<Activity> = Superstate::new(
+        "uninvolved",
+        &[Activity::Standby, Activity::Relay, Activity::Junction, Activity::Leaf],
+    );
 
-const fn later(source: Activity, event: DutyEvent, target: Activity) -> Row<Activity, DutyEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority: 1 }
-}
+    /// The robot holds a post.
+    pub const AT_REST: Superstate<Activity> = Superstate::new(
+        "at rest",
+        &[
+            Activity::Standby,
+            Activity::Relay,
+            Activity::Junction,
+            Activity::Leaf,
+            Activity::Bound,
+            Activity::Waiting,
+            Activity::AwaitingRelease,
+        ],
+    );
 
-const fn last(source: Activity, event: DutyEvent, target: Activity) -> Row<Activity, DutyEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority: 2 }
-}
+    /// The robot is of the primary team.
+    pub const IN_TEAM: Superstate<Activity> =
+        Superstate::new("in the team", &[Activity::Following, Activity::Leading]);
 
-/// Two robots exchange their duties: both transitions.
-const fn exchange(mover: Activity, parked: Activity) -> [Row<Activity, DutyEvent>; 2] {
-    [row(mover, parked.taken_over(), parked), row(parked, mover.taken_over(), mover)]
-}
-
-/// The exchanges of a robot that is under way with every kind of robot that it may meet at rest: the
-/// primary team rests while a secondary team is active, or has not heard yet that it is over.
-macro_rules! rows {
-    ($($row:expr,)* ; exchanges $($mover:ident: [$($parked:ident),*]),*) => {
-        &[$($row,)* $($(
-            exchange(Activity::$mover, Activity::$parked)[0],
-            exchange(Activity::$mover, Activity::$parked)[1],
-        )*)*]
-    };
+    /// The robot is on its way, and holds no fixed post.
+    pub const UNDER_WAY: Superstate<Activity> =
+        Superstate::new("under way", &[Activity::Shifting, Activity::Following, Activity::Leading]);
 }
 
 /// The table of a robot's duty.
@@ -280,60 +282,59 @@ macro_rules! rows {
 pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
     use Activity::*;
     use DutyEvent as On;
-    TransitionTable::new(rows![
-        row(Standby, On::Joined, Standby),
-        row(Standby, On::Elected, Leading),
-        row(Standby, On::Bound, Bound),
-        row(Relay, On::Bound, Bound),
-        row(Junction, On::Bound, Bound),
-        row(Leaf, On::Bound, Bound),
-        last(Leading, On::Burdened, Bound),
-        row(Bound, On::RelayResumed, Relay),
-        row(Bound, On::LeafResumed, Leaf),
-        row(Bound, On::TaskReached, Leaf),
-        row(Bound, On::Released, Leading),
-        row(Standby, On::PathJoined, Waiting),
-        row(Relay, On::PathJoined, Waiting),
-        row(Junction, On::PathJoined, Waiting),
-        row(Leaf, On::PathJoined, Waiting),
-        row(Bound, On::PathJoined, AwaitingRelease),
-        row(Waiting, On::StandbyKept, Standby),
-        row(Waiting, On::RelayKept, Relay),
-        row(Waiting, On::LeafKept, Leaf),
-        row(AwaitingRelease, On::BoundKept, Bound),
-        row(AwaitingRelease, On::RelayResumed, Relay),
-        row(AwaitingRelease, On::LeafResumed, Leaf),
-        row(AwaitingRelease, On::StandbyKept, Standby),
-        row(Waiting, On::TeamJoined, Following),
-        row(AwaitingRelease, On::Released, Leading),
-        row(Shifting, On::StandbyReached, Standby),
-        row(Shifting, On::RelayReached, Relay),
-        row(Shifting, On::JunctionReached, Junction),
-        row(Shifting, On::LeafReached, Leaf),
-        row(Leading, On::TaskReached, Leaf),
-        row(Leading, On::Settled, Relay),
-        row(Following, On::Settled, Relay),
-        later(Waiting, On::SetOut, Shifting),
-        later(Standby, On::Attached, Standby),
-        last(Relay, On::Attached, Relay),
-        last(Junction, On::Attached, Junction),
-        later(Leaf, On::Attached, Leaf),
-        later(Bound, On::Attached, Bound),
-        last(Leaf, On::Discharged, Relay),
-        later(Following, On::Attached, Following),
-        later(Leading, On::Attached, Leading),
-        last(Standby, On::Promoted, Relay),
-        later(Relay, On::Branched, Junction),
-        later(Relay, On::Retired, Standby),
-        later(Junction, On::Merged, Relay),
-        row(Following, On::TakesFollowing, Following),
-        ;
-        exchanges
-        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Following,
-            Leading],
-        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Leading],
-        Leading: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease]
-    ])
+    transitions![Activity, DutyEvent;
+        from(Standby).on(On::Joined).to(Standby),
+        from(Standby).on(On::Elected).to(Leading),
+        from_any(Activity::UNINVOLVED).on(On::Bound).to(Bound),
+        from(Leading).on(On::Burdened).to(Bound).priority(2),
+        from(Bound).on(On::RelayResumed).to(Relay),
+        from(Bound).on(On::LeafResumed).to(Leaf),
+        from(Bound).on(On::TaskReached).to(Leaf),
+        from(Bound).on(On::Released).to(Leading),
+        from_any(Activity::UNINVOLVED).on(On::PathJoined).to(Waiting),
+        from(Bound).on(On::PathJoined).to(AwaitingRelease),
+        from(Waiting).on(On::StandbyKept).to(Standby),
+        from(Waiting).on(On::RelayKept).to(Relay),
+        from(Waiting).on(On::LeafKept).to(Leaf),
+        from(AwaitingRelease).on(On::BoundKept).to(Bound),
+        from(AwaitingRelease).on(On::RelayResumed).to(Relay),
+        from(AwaitingRelease).on(On::LeafResumed).to(Leaf),
+        from(AwaitingRelease).on(On::StandbyKept).to(Standby),
+        from(Waiting).on(On::TeamJoined).to(Following),
+        from(AwaitingRelease).on(On::Released).to(Leading),
+        from(Shifting).on(On::StandbyReached).to(Standby),
+        from(Shifting).on(On::RelayReached).to(Relay),
+        from(Shifting).on(On::JunctionReached).to(Junction),
+        from(Shifting).on(On::LeafReached).to(Leaf),
+        from(Leading).on(On::TaskReached).to(Leaf),
+        from_any(Activity::IN_TEAM).on(On::Settled).to(Relay),
+        from(Waiting).on(On::SetOut).to(Shifting).priority(1),
+        from(Standby).on(On::Attached).to(Standby).priority(1),
+        from(Relay).on(On::Attached).to(Relay).priority(2),
+        from(Junction).on(On::Attached).to(Junction).priority(2),
+        from(Leaf).on(On::Attached).to(Leaf).priority(1),
+        from(Bound).on(On::Attached).to(Bound).priority(1),
+        from(Leaf).on(On::Discharged).to(Relay).priority(2),
+        from_any(Activity::IN_TEAM).on(On::Attached).stay().priority(1),
+        from(Standby).on(On::Promoted).to(Relay).priority(2),
+        from(Relay).on(On::Branched).to(Junction).priority(1),
+        from(Relay).on(On::Retired).to(Standby).priority(1),
+        from(Junction).on(On::Merged).to(Relay).priority(1),
+        from_any(Activity::UNDER_WAY).on(On::TakesStandby).to(Standby),
+        from_any(Activity::UNDER_WAY).on(On::TakesRelay).to(Relay),
+        from_any(Activity::UNDER_WAY).on(On::TakesJunction).to(Junction),
+        from_any(Activity::UNDER_WAY).on(On::TakesLeaf).to(Leaf),
+        from_any(Activity::UNDER_WAY).on(On::TakesBound).to(Bound),
+        from_any(Activity::UNDER_WAY).on(On::TakesWaiting).to(Waiting),
+        from_any(Activity::UNDER_WAY).on(On::TakesAwaitingRelease).to(AwaitingRelease),
+        from_any(Activity::AT_REST).on(On::TakesShifting).to(Shifting),
+        from_any(Activity::AT_REST).on(On::TakesFollowing).to(Following),
+        from_any(Activity::AT_REST).on(On::TakesLeading).to(Leading),
+        from_any(Activity::IN_TEAM).on(On::TakesShifting).to(Shifting),
+        from_any(Activity::UNDER_WAY).on(On::TakesFollowing).to(Following),
+        from(Shifting).on(On::TakesLeading).to(Leading),
+        from(Following).on(On::TakesLeading).to(Leading),
+    ]
 };
 
 #[cfg(test)]

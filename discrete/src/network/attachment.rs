@@ -3,7 +3,7 @@
 //! Which parent a post has belongs to the duty, whose rows change it. Here the robot follows what its
 //! parent tells: the way to an access point, as a path vector ([`Lineage`](super::Lineage)).
 
-use crate::{Row, TransitionTable, Urgency, vocabulary};
+use crate::{TransitionTable, from, transitions, vocabulary};
 
 vocabulary! {
     /// Whether a robot's post belongs to a tree.
@@ -30,19 +30,11 @@ vocabulary! {
 pub const ATTACHMENT: TransitionTable<Attachment, AttachmentEvent> = {
     use Attachment::{Attached, Detached};
     use AttachmentEvent as On;
-    const fn row(
-        priority: u8,
-        source: Attachment,
-        event: AttachmentEvent,
-        target: Attachment,
-    ) -> Row<Attachment, AttachmentEvent> {
-        Row { source, event, target, urgency: Urgency::AtOnce, priority }
-    }
-    TransitionTable::new(&[
-        row(0, Detached, On::WayFound, Attached),
-        row(0, Attached, On::WayLost, Detached),
-        row(1, Attached, On::WayChanged, Attached),
-    ])
+    transitions![Attachment, AttachmentEvent;
+        from(Detached).on(On::WayFound).to(Attached),
+        from(Attached).on(On::WayLost).to(Detached),
+        from(Attached).on(On::WayChanged).to(Attached).priority(1),
+    ]
 };
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! gone is one that may not move any more: between the last roll that lets it move and the first
 //! that calls it gone there is one that suspends it, for as long as a roll is valid: a failure detector with leases.
 
-use crate::{Row, TransitionTable, Urgency, vocabulary};
+use crate::{TransitionTable, from, transitions, vocabulary};
 
 vocabulary! {
     /// What an access point knows of a robot.
@@ -33,32 +33,24 @@ vocabulary! {
     }
 }
 
-const fn row(
-    source: Attendance,
-    event: AttendanceEvent,
-    target: Attendance,
-) -> Row<Attendance, AttendanceEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
-}
-
 /// The table of a robot's attendance.
 pub const ATTENDANCE: TransitionTable<Attendance, AttendanceEvent> = {
     use Attendance::{Gone, Present, Returning, Suspended};
     use AttendanceEvent as On;
-    TransitionTable::new(&[
-        row(Present, On::Missed, Suspended),
-        row(Suspended, On::HeardAgain, Present),
-        row(Suspended, On::RollsExpired, Gone),
-        row(Gone, On::HeardAgain, Returning),
-        row(Returning, On::Missed, Gone),
-        row(Returning, On::Readmitted, Present),
-    ])
+    transitions![Attendance, AttendanceEvent;
+        from(Present).on(On::Missed).to(Suspended),
+        from(Suspended).on(On::HeardAgain).to(Present),
+        from(Suspended).on(On::RollsExpired).to(Gone),
+        from(Gone).on(On::HeardAgain).to(Returning),
+        from(Returning).on(On::Missed).to(Gone),
+        from(Returning).on(On::Readmitted).to(Present),
+    ]
 };
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Location;
+    use crate::{Location, Row};
 
     #[test]
     fn the_table_is_deterministic_and_every_location_is_reached_and_left() {

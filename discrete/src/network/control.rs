@@ -5,7 +5,7 @@
 //! the next tick of its clock; then it processes what it has received, and sends. Iterations, sweeps, reservation
 //! and negotiation have a fixed number of rounds, in which a robot with nothing to do does not tick.
 
-use crate::{Row, TransitionTable, Urgency, vocabulary};
+use crate::{TransitionTable, from, transitions, vocabulary};
 
 vocabulary! {
     /// The stage of a robot in its control period: what it waits for.
@@ -85,51 +85,43 @@ vocabulary! {
     }
 }
 
-const fn row(source: Stage, event: StageEvent, target: Stage) -> Row<Stage, StageEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
-}
-
 /// The table of the control period.
 pub const CONTROL: TransitionTable<Stage, StageEvent> = {
     use Stage::*;
     use StageEvent as On;
-    TransitionTable::new(&[
-        row(Moving, On::SampleDue, Beacons),
-        row(Beacons, On::NextRound, Beacons),
-        row(Beacons, On::RoutesDue, Iterations),
-        row(Beacons, On::OldFlowsDue, OldFlows),
-        row(OldFlows, On::OldFlowsHeard, Iterations),
-        row(Iterations, On::MultipliersHeard, Iterations),
-        row(Iterations, On::NextIteration, Iterations),
-        row(Iterations, On::SweepDue, Sweeps),
-        row(Sweeps, On::DemandsHeard, Sweeps),
-        row(Sweeps, On::SweepOver, Sweeps),
-        row(Sweeps, On::SweepsOver, Reserving),
-        row(Sweeps, On::ShortagesHeard, Sweeps),
-        row(Sweeps, On::ReliefsHeard, Sweeps),
-        row(Reserving, On::GrantsHeard, Reserving),
-        row(Reserving, On::RoutesDone, Negotiation),
-        row(Negotiation, On::ProposalsHeard, Negotiation),
-        row(Negotiation, On::NextAttempt, Negotiation),
-        row(Negotiation, On::MoveCertified, Moving),
-    ])
+    transitions![Stage, StageEvent;
+        from(Moving).on(On::SampleDue).to(Beacons),
+        from(Beacons).on(On::NextRound).to(Beacons),
+        from(Beacons).on(On::RoutesDue).to(Iterations),
+        from(Beacons).on(On::OldFlowsDue).to(OldFlows),
+        from(OldFlows).on(On::OldFlowsHeard).to(Iterations),
+        from(Iterations).on(On::MultipliersHeard).to(Iterations),
+        from(Iterations).on(On::NextIteration).to(Iterations),
+        from(Iterations).on(On::SweepDue).to(Sweeps),
+        from(Sweeps).on(On::DemandsHeard).to(Sweeps),
+        from(Sweeps).on(On::SweepOver).to(Sweeps),
+        from(Sweeps).on(On::SweepsOver).to(Reserving),
+        from(Sweeps).on(On::ShortagesHeard).to(Sweeps),
+        from(Sweeps).on(On::ReliefsHeard).to(Sweeps),
+        from(Reserving).on(On::GrantsHeard).to(Reserving),
+        from(Reserving).on(On::RoutesDone).to(Negotiation),
+        from(Negotiation).on(On::ProposalsHeard).to(Negotiation),
+        from(Negotiation).on(On::NextAttempt).to(Negotiation),
+        from(Negotiation).on(On::MoveCertified).to(Moving),
+    ]
 };
 
-const fn round(source: Round, event: RoundEvent, target: Round) -> Row<Round, RoundEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
-}
-
 /// The table of an access point's control period.
-pub const ROUNDS: TransitionTable<Round, RoundEvent> = TransitionTable::new(&[
-    round(Round::Resting, RoundEvent::SampleDue, Round::Listening),
-    round(Round::Listening, RoundEvent::NextRound, Round::Listening),
-    round(Round::Listening, RoundEvent::RoundsOver, Round::Resting),
-]);
+pub const ROUNDS: TransitionTable<Round, RoundEvent> = transitions![Round, RoundEvent;
+    from(Round::Resting).on(RoundEvent::SampleDue).to(Round::Listening),
+    from(Round::Listening).on(RoundEvent::NextRound).to(Round::Listening),
+    from(Round::Listening).on(RoundEvent::RoundsOver).to(Round::Resting),
+];
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Event, Location};
+    use crate::{Event, Location, Row};
 
     #[test]
     fn the_table_is_deterministic_and_every_stage_is_reached() {

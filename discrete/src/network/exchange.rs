@@ -3,7 +3,7 @@
 //! What each transition does to the offers and replies themselves is
 //! [`Offers`](super::Offers).
 
-use crate::{Row, TransitionTable, Urgency, vocabulary};
+use crate::{Superstate, TransitionTable, from, from_any, transitions, vocabulary};
 
 vocabulary! {
     /// The state of a robot in the exchange of duties.
@@ -47,13 +47,12 @@ vocabulary! {
     }
 }
 
-const fn row(
-    priority: u8,
-    source: ExchangeStage,
-    event: ExchangeEvent,
-    target: ExchangeStage,
-) -> Row<ExchangeStage, ExchangeEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority }
+impl ExchangeStage {
+    /// The robot is engaged in an exchange with a partner.
+    pub const ENGAGED: Superstate<ExchangeStage> = Superstate::new(
+        "engaged",
+        &[ExchangeStage::Offering, ExchangeStage::OfferingAndRefusing, ExchangeStage::Giving],
+    );
 }
 
 /// The table of the exchange of duties.
@@ -63,25 +62,23 @@ const fn row(
 pub const EXCHANGE: TransitionTable<ExchangeStage, ExchangeEvent> = {
     use ExchangeEvent as On;
     use ExchangeStage::{Free, Giving, Offering, OfferingAndRefusing, Refusing};
-    TransitionTable::new(&[
-        row(0, Free, On::OffersForgotten, Free),
-        row(3, Free, On::Offers, Offering),
-        row(2, Free, On::Gives, Giving),
-        row(2, Free, On::Refuses, Refusing),
-        row(0, Offering, On::DutyTaken, Free),
-        row(0, Offering, On::OfferRefused, Free),
-        row(2, Offering, On::Refuses, OfferingAndRefusing),
-        row(0, OfferingAndRefusing, On::DutyTaken, Refusing),
-        row(0, OfferingAndRefusing, On::OfferRefused, Refusing),
-        row(1, OfferingAndRefusing, On::RefusalHeard, Offering),
-        row(1, OfferingAndRefusing, On::RefusalInVain, Offering),
-        row(1, Refusing, On::RefusalHeard, Free),
-        row(1, Refusing, On::RefusalInVain, Free),
-        row(1, Giving, On::DutyGiven, Free),
-        row(4, Offering, On::PartnerLost, Free),
-        row(4, OfferingAndRefusing, On::PartnerLost, Free),
-        row(4, Giving, On::PartnerLost, Free),
-    ])
+    transitions![ExchangeStage, ExchangeEvent;
+        from(Free).on(On::OffersForgotten).to(Free),
+        from(Free).on(On::Offers).to(Offering).priority(3),
+        from(Free).on(On::Gives).to(Giving).priority(2),
+        from(Free).on(On::Refuses).to(Refusing).priority(2),
+        from(Offering).on(On::DutyTaken).to(Free),
+        from(Offering).on(On::OfferRefused).to(Free),
+        from(Offering).on(On::Refuses).to(OfferingAndRefusing).priority(2),
+        from(OfferingAndRefusing).on(On::DutyTaken).to(Refusing),
+        from(OfferingAndRefusing).on(On::OfferRefused).to(Refusing),
+        from(OfferingAndRefusing).on(On::RefusalHeard).to(Offering).priority(1),
+        from(OfferingAndRefusing).on(On::RefusalInVain).to(Offering).priority(1),
+        from(Refusing).on(On::RefusalHeard).to(Free).priority(1),
+        from(Refusing).on(On::RefusalInVain).to(Free).priority(1),
+        from(Giving).on(On::DutyGiven).to(Free).priority(1),
+        from_any(ExchangeStage::ENGAGED).on(On::PartnerLost).to(Free).priority(4),
+    ]
 };
 
 #[cfg(test)]

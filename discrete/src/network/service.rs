@@ -1,7 +1,7 @@
 //! The service of a user's tasks, as an access point knows it, and as the user does: locations and
 //! tables.
 
-use crate::{Row, TransitionTable, Urgency, vocabulary};
+use crate::{Location as _, Superstate, TransitionTable, from, from_any, transitions, vocabulary};
 
 vocabulary! {
     /// Where the service of the tasks stands for an access point.
@@ -79,13 +79,25 @@ vocabulary! {
     }
 }
 
-const fn row(
-    priority: u8,
-    source: Service,
-    event: ServiceEvent,
-    target: Service,
-) -> Row<Service, ServiceEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority }
+impl Service {
+    /// A task is pursued.
+    pub const PURSUING: Superstate<Service> =
+        Superstate::new("pursuing", &[Service::Electing, Service::UnderWay]);
+
+    /// The mission has not ended.
+    pub const OPEN: Superstate<Service> = Superstate::new(
+        "open",
+        &[Service::Gathering, Service::Electing, Service::UnderWay, Service::Done],
+    );
+
+    /// Any of them.
+    pub const ANY: Superstate<Service> = Superstate::new("any", Service::ALL);
+}
+
+impl Request {
+    /// The user waits for an answer, or for news.
+    pub const PENDING: Superstate<Request> =
+        Superstate::new("pending", &[Request::Asking, Request::Waiting]);
 }
 
 /// The table of an access point.
@@ -96,57 +108,24 @@ const fn row(
 pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
     use Service::*;
     use ServiceEvent as On;
-    TransitionTable::new(&[
-        row(0, Gathering, On::ElectionHeard, Electing),
-        row(0, Gathering, On::ProgressHeard, UnderWay),
-        row(0, Gathering, On::ServiceHeard, Done),
-        row(0, Gathering, On::EndHeard, Over),
-        row(2, Gathering, On::Closes, Gathering),
-        row(3, Gathering, On::Announces, Electing),
-        row(3, Gathering, On::NoRobot, Over),
-        row(3, Gathering, On::AllServiced, Over),
-        row(0, Electing, On::ElectionHeard, Electing),
-        row(0, Electing, On::ProgressHeard, UnderWay),
-        row(0, Electing, On::ServiceHeard, Done),
-        row(0, Electing, On::EndHeard, Over),
-        row(1, Electing, On::Withdraws, Done),
-        row(2, Electing, On::Closes, Electing),
-        row(3, Electing, On::AnnouncesAgain, Electing),
-        row(4, Electing, On::GivesUp, Done),
-        row(3, Electing, On::NoRobot, Over),
-        row(3, Electing, On::NoBid, Over),
-        row(3, Electing, On::NoAnswer, Over),
-        row(0, UnderWay, On::ElectionHeard, Electing),
-        row(0, UnderWay, On::ProgressHeard, UnderWay),
-        row(0, UnderWay, On::ServiceHeard, Done),
-        row(0, UnderWay, On::EndHeard, Over),
-        row(1, UnderWay, On::Withdraws, Done),
-        row(2, UnderWay, On::Closes, UnderWay),
-        row(3, UnderWay, On::AnnouncesAgain, Electing),
-        row(4, UnderWay, On::GivesUp, Done),
-        row(3, UnderWay, On::NoRobot, Over),
-        row(0, Done, On::ElectionHeard, Electing),
-        row(0, Done, On::ProgressHeard, UnderWay),
-        row(0, Done, On::ServiceHeard, Done),
-        row(0, Done, On::EndHeard, Over),
-        row(2, Done, On::Closes, Done),
-        row(3, Done, On::Announces, Electing),
-        row(3, Done, On::NoRobot, Over),
-        row(3, Done, On::AllServiced, Over),
-        row(0, Over, On::ElectionHeard, Electing),
-        row(0, Over, On::ProgressHeard, UnderWay),
-        row(0, Over, On::ServiceHeard, Done),
-    ])
+    transitions![Service, ServiceEvent;
+        from_any(Service::ANY).on(On::ElectionHeard).to(Electing),
+        from_any(Service::ANY).on(On::ProgressHeard).to(UnderWay),
+        from_any(Service::ANY).on(On::ServiceHeard).to(Done),
+        from_any(Service::OPEN).on(On::EndHeard).to(Over),
+        from_any(Service::PURSUING).on(On::Withdraws).to(Done).priority(1),
+        from_any(Service::OPEN).on(On::Closes).stay().priority(2),
+        from(Gathering).on(On::Announces).to(Electing).priority(3),
+        from(Done).on(On::Announces).to(Electing).priority(3),
+        from_any(Service::PURSUING).on(On::AnnouncesAgain).to(Electing).priority(3),
+        from_any(Service::OPEN).on(On::NoRobot).to(Over).priority(3),
+        from(Gathering).on(On::AllServiced).to(Over).priority(3),
+        from(Done).on(On::AllServiced).to(Over).priority(3),
+        from(Electing).on(On::NoBid).to(Over).priority(3),
+        from(Electing).on(On::NoAnswer).to(Over).priority(3),
+        from_any(Service::PURSUING).on(On::GivesUp).to(Done).priority(4),
+    ]
 };
-
-const fn request(
-    priority: u8,
-    source: Request,
-    event: RequestEvent,
-    target: Request,
-) -> Row<Request, RequestEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority }
-}
 
 /// The table of the user.
 ///
@@ -154,21 +133,19 @@ const fn request(
 pub const REQUESTS: TransitionTable<Request, RequestEvent> = {
     use Request::*;
     use RequestEvent as On;
-    TransitionTable::new(&[
-        request(2, Preparing, On::Prepared, Asking),
-        request(0, Preparing, On::AnswerHeard, Waiting),
-        request(0, Preparing, On::EndHeard, Informed),
-        request(2, Asking, On::PeriodOver, Asking),
-        request(0, Asking, On::AnswerHeard, Waiting),
-        request(0, Asking, On::EndHeard, Informed),
-        request(1, Asking, On::Missed, Deserted),
-        request(2, Waiting, On::PeriodOver, Waiting),
-        request(0, Waiting, On::EndHeard, Informed),
-        request(1, Waiting, On::Missed, Deserted),
-        request(2, Informed, On::PeriodOver, Informed),
-        request(0, Informed, On::AnswerHeard, Waiting),
-        request(2, Deserted, On::PeriodOver, Deserted),
-    ])
+    transitions![Request, RequestEvent;
+        from(Preparing).on(On::Prepared).to(Asking).priority(2),
+        from(Preparing).on(On::AnswerHeard).to(Waiting),
+        from(Preparing).on(On::EndHeard).to(Informed),
+        from(Asking).on(On::AnswerHeard).to(Waiting),
+        from(Asking).on(On::EndHeard).to(Informed),
+        from_any(Request::PENDING).on(On::Missed).to(Deserted).priority(1),
+        from_any(Request::PENDING).on(On::PeriodOver).stay().priority(2),
+        from(Waiting).on(On::EndHeard).to(Informed),
+        from(Informed).on(On::PeriodOver).to(Informed).priority(2),
+        from(Informed).on(On::AnswerHeard).to(Waiting),
+        from(Deserted).on(On::PeriodOver).to(Deserted).priority(2),
+    ]
 };
 
 #[cfg(test)]

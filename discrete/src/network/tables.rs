@@ -4,7 +4,7 @@
 //! into events, and the resets, are attached to the rows where numbers are known.
 
 use super::Phase;
-use crate::{Row, TransitionTable, Urgency, vocabulary};
+use crate::{Superstate, TransitionTable, from, from_any, transitions, vocabulary};
 
 #[cfg(any(kani, test))]
 mod proofs;
@@ -57,80 +57,74 @@ vocabulary! {
     }
 }
 
-const fn step(
-    priority: u8,
-    source: Phase,
-    event: MissionStep,
-    target: Phase,
-) -> Row<Phase, MissionStep> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority }
+impl Phase {
+    /// A task is pursued: its leader is elected, or leads, or its team grows by a recruit.
+    pub const PURSUING: Superstate<Phase> = Superstate::new(
+        "pursuing",
+        &[
+            Phase::LeaderElection,
+            Phase::Advance,
+            Phase::RecruitElection,
+            Phase::PathAgreement,
+            Phase::Shift,
+        ],
+    );
+
+    /// The mission has not ended.
+    pub const OPEN: Superstate<Phase> = Superstate::new(
+        "open",
+        &[
+            Phase::Idle,
+            Phase::LeaderElection,
+            Phase::Advance,
+            Phase::RecruitElection,
+            Phase::PathAgreement,
+            Phase::Shift,
+        ],
+    );
 }
 
 /// The table of the mission automaton.
 ///
 /// Priority 0: what the newest notice says. Priorities from 1: what the robot itself finds; a team
 /// that has reached its task calls for no recruit, and one that can call for one does not give up.
-pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
-    step(0, Phase::Idle, MissionStep::Ended, Phase::Ended),
-    step(0, Phase::Idle, MissionStep::Announced, Phase::LeaderElection),
-    step(0, Phase::Idle, MissionStep::Informed, Phase::Idle),
-    step(0, Phase::Idle, MissionStep::Repeated, Phase::Idle),
-    step(0, Phase::Idle, MissionStep::Called, Phase::RecruitElection),
-    step(0, Phase::Idle, MissionStep::PathHeard, Phase::PathAgreement),
-    step(0, Phase::Idle, MissionStep::Resumed, Phase::Advance),
-    step(0, Phase::LeaderElection, MissionStep::Ended, Phase::Ended),
-    step(0, Phase::LeaderElection, MissionStep::Announced, Phase::LeaderElection),
-    step(0, Phase::LeaderElection, MissionStep::Informed, Phase::LeaderElection),
-    step(0, Phase::LeaderElection, MissionStep::Overtaken, Phase::Idle),
-    step(0, Phase::LeaderElection, MissionStep::Serviced, Phase::Idle),
-    step(0, Phase::LeaderElection, MissionStep::Called, Phase::RecruitElection),
-    step(0, Phase::LeaderElection, MissionStep::PathHeard, Phase::PathAgreement),
-    step(0, Phase::LeaderElection, MissionStep::Resumed, Phase::Advance),
-    step(1, Phase::LeaderElection, MissionStep::Elected, Phase::Advance),
-    step(0, Phase::Advance, MissionStep::Ended, Phase::Ended),
-    step(0, Phase::Advance, MissionStep::Announced, Phase::LeaderElection),
-    step(0, Phase::Advance, MissionStep::Informed, Phase::Advance),
-    step(0, Phase::Advance, MissionStep::Overtaken, Phase::Idle),
-    step(0, Phase::Advance, MissionStep::Serviced, Phase::Idle),
-    step(0, Phase::Advance, MissionStep::Called, Phase::RecruitElection),
-    step(0, Phase::Advance, MissionStep::PathHeard, Phase::PathAgreement),
-    step(1, Phase::Advance, MissionStep::Bound, Phase::RecruitElection),
-    step(1, Phase::Advance, MissionStep::Unbound, Phase::Advance),
-    step(1, Phase::Advance, MissionStep::Reached, Phase::Idle),
-    step(2, Phase::Advance, MissionStep::Trapped, Phase::RecruitElection),
-    step(3, Phase::Advance, MissionStep::Foreseen, Phase::RecruitElection),
-    step(4, Phase::Advance, MissionStep::Blocked, Phase::Ended),
-    step(0, Phase::RecruitElection, MissionStep::Ended, Phase::Ended),
-    step(0, Phase::RecruitElection, MissionStep::Announced, Phase::LeaderElection),
-    step(0, Phase::RecruitElection, MissionStep::Informed, Phase::RecruitElection),
-    step(0, Phase::RecruitElection, MissionStep::Overtaken, Phase::Idle),
-    step(0, Phase::RecruitElection, MissionStep::Serviced, Phase::Idle),
-    step(0, Phase::RecruitElection, MissionStep::Called, Phase::RecruitElection),
-    step(0, Phase::RecruitElection, MissionStep::PathHeard, Phase::PathAgreement),
-    step(0, Phase::RecruitElection, MissionStep::Resumed, Phase::Advance),
-    step(1, Phase::RecruitElection, MissionStep::Recruited, Phase::PathAgreement),
-    step(1, Phase::RecruitElection, MissionStep::Unaided, Phase::RecruitElection),
-    step(0, Phase::PathAgreement, MissionStep::Ended, Phase::Ended),
-    step(0, Phase::PathAgreement, MissionStep::Announced, Phase::LeaderElection),
-    step(0, Phase::PathAgreement, MissionStep::Informed, Phase::PathAgreement),
-    step(0, Phase::PathAgreement, MissionStep::Overtaken, Phase::Idle),
-    step(0, Phase::PathAgreement, MissionStep::Serviced, Phase::Idle),
-    step(0, Phase::PathAgreement, MissionStep::Called, Phase::RecruitElection),
-    step(0, Phase::PathAgreement, MissionStep::Resumed, Phase::Advance),
-    step(1, Phase::PathAgreement, MissionStep::PointsAgreed, Phase::Shift),
-    step(0, Phase::Shift, MissionStep::Ended, Phase::Ended),
-    step(0, Phase::Shift, MissionStep::Announced, Phase::LeaderElection),
-    step(0, Phase::Shift, MissionStep::Informed, Phase::Shift),
-    step(0, Phase::Shift, MissionStep::Overtaken, Phase::Idle),
-    step(0, Phase::Shift, MissionStep::Serviced, Phase::Idle),
-    step(0, Phase::Shift, MissionStep::Called, Phase::RecruitElection),
-    step(0, Phase::Shift, MissionStep::Resumed, Phase::Advance),
-    step(1, Phase::Shift, MissionStep::SubgroupArrived, Phase::Shift),
-    step(1, Phase::Shift, MissionStep::Relieved, Phase::Advance),
-    step(3, Phase::Shift, MissionStep::Blocked, Phase::Ended),
-    step(0, Phase::Ended, MissionStep::Announced, Phase::LeaderElection),
-    step(0, Phase::Ended, MissionStep::Overtaken, Phase::Idle),
-]);
+pub const MISSION: TransitionTable<Phase, MissionStep> = {
+    use MissionStep as On;
+    use Phase::*;
+    transitions![Phase, MissionStep;
+        from_any(Phase::OPEN).on(On::Ended).to(Ended),
+        from_any(Phase::OPEN).on(On::Announced).to(LeaderElection),
+        from(Ended).on(On::Announced).to(LeaderElection),
+        from_any(Phase::OPEN).on(On::Informed).stay(),
+        from_any(Phase::PURSUING).on(On::Overtaken).to(Idle),
+        from(Ended).on(On::Overtaken).to(Idle),
+        from_any(Phase::PURSUING).on(On::Serviced).to(Idle),
+        from(Idle).on(On::Repeated).to(Idle),
+        from_any(Phase::OPEN).on(On::Called).to(RecruitElection),
+        from(Idle).on(On::PathHeard).to(PathAgreement),
+        from(LeaderElection).on(On::PathHeard).to(PathAgreement),
+        from(Advance).on(On::PathHeard).to(PathAgreement),
+        from(RecruitElection).on(On::PathHeard).to(PathAgreement),
+        from(Idle).on(On::Resumed).to(Advance),
+        from(LeaderElection).on(On::Resumed).to(Advance),
+        from(RecruitElection).on(On::Resumed).to(Advance),
+        from(PathAgreement).on(On::Resumed).to(Advance),
+        from(Shift).on(On::Resumed).to(Advance),
+        from(LeaderElection).on(On::Elected).to(Advance).priority(1),
+        from(Advance).on(On::Bound).to(RecruitElection).priority(1),
+        from(Advance).on(On::Unbound).to(Advance).priority(1),
+        from(Advance).on(On::Reached).to(Idle).priority(1),
+        from(Advance).on(On::Trapped).to(RecruitElection).priority(2),
+        from(Advance).on(On::Foreseen).to(RecruitElection).priority(3),
+        from(Advance).on(On::Blocked).to(Ended).priority(4),
+        from(RecruitElection).on(On::Recruited).to(PathAgreement).priority(1),
+        from(RecruitElection).on(On::Unaided).to(RecruitElection).priority(1),
+        from(PathAgreement).on(On::PointsAgreed).to(Shift).priority(1),
+        from(Shift).on(On::SubgroupArrived).to(Shift).priority(1),
+        from(Shift).on(On::Relieved).to(Advance).priority(1),
+        from(Shift).on(On::Blocked).to(Ended).priority(3),
+    ]
+};
 
 #[cfg(test)]
 mod tests {

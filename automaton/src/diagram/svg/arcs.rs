@@ -42,7 +42,9 @@ const LOOP_GAP: f64 = 14.0;
 
 /// Whether the picture does not become a tangle.
 pub(super) fn suit(sketch: &Sketch) -> bool {
-    (1..=MOST_PLACES).contains(&sketch.modes.len()) && sketch.links.len() <= MOST_LINKS
+    (1..=MOST_PLACES).contains(&sketch.modes.len())
+        && sketch.links.len() <= MOST_LINKS
+        && sketch.superstates.is_empty()
 }
 
 /// Draws boxes and arcs; also says how large the picture is.

@@ -431,7 +431,10 @@ impl AccessPoint {
 
     /// The task that is pursued with its electors, as robots tell it: an access point that restarts
     /// learns of it so.
-    fn current_electors(&self) -> Option<Announced> {
+    fn known_electors(&self) -> Option<Announced> {
+        if let Some(announced) = self.announced() {
+            return Some(announced.clone());
+        }
         let epoch = self.tasks.newest().map(|newest| newest.id().epoch());
         let current = self.notices.announced().filter(|(id, _)| Some(id.epoch()) == epoch);
         current.map(|(_, announcement)| electors_of(announcement))
@@ -488,29 +491,6 @@ fn electors_of(announcement: &Announcement) -> Announced {
 
 // ---- The resets ------------------------------------------------------------------------------
 
-/// A location that may know which task is announced; most do not.
-trait KnowsTask {
-    fn announced(&self) -> Option<Announced> {
-        None
-    }
-}
-
-impl KnowsTask for Gathering {}
-impl KnowsTask for Over {}
-impl KnowsTask for Done {}
-
-impl KnowsTask for Electing {
-    fn announced(&self) -> Option<Announced> {
-        self.announced.clone()
-    }
-}
-
-impl KnowsTask for UnderWay {
-    fn announced(&self) -> Option<Announced> {
-        self.announced.clone()
-    }
-}
-
 /// It takes up the notice that it has heard.
 fn take_up(point: &AccessPoint, effects: &mut Effects) -> Option<Notice> {
     let newest = point.tasks.newest()?.clone();
@@ -519,35 +499,27 @@ fn take_up(point: &AccessPoint, effects: &mut Effects) -> Option<Notice> {
     Some(notice)
 }
 
-fn hear_election<A: KnowsTask>(
-    place: &A,
-    point: &AccessPoint,
-    effects: &mut Effects,
-) -> Option<Electing> {
+fn hear_election(_: &Serving, point: &AccessPoint, effects: &mut Effects) -> Option<Electing> {
     let announced = match take_up(point, effects)? {
         Notice::Task(announcement) => Some(electors_of(&announcement)),
-        _ => place.announced().or_else(|| point.current_electors()),
+        _ => point.known_electors(),
     };
     Some(Electing { announced })
 }
 
-fn hear_progress<A: KnowsTask>(
-    place: &A,
-    point: &AccessPoint,
-    effects: &mut Effects,
-) -> Option<UnderWay> {
+fn hear_progress(_: &Serving, point: &AccessPoint, effects: &mut Effects) -> Option<UnderWay> {
     take_up(point, effects)?;
-    Some(UnderWay { announced: place.announced().or_else(|| point.current_electors()) })
+    Some(UnderWay { announced: point.known_electors() })
 }
 
-fn hear_service<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
+fn hear_service(_: &Serving, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
     match take_up(point, effects)? {
         Notice::Serviced { task } | Notice::Withdrawn { task } => Some(Done { task }),
         _ => None,
     }
 }
 
-fn hear_end<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
+fn hear_end(_: &Serving, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     take_up(point, effects).map(|_| Over)
 }
 
@@ -567,8 +539,8 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
 }
 
 /// The user has taken back the task that is pursued: those who pursue it stop, and its team is dissolved.
-fn withdraw<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
-    let task = place.announced()?.task;
+fn withdraw(_: &Serving, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
+    let task = point.announced()?.task;
     if point.is_open(task) {
         effects.push(ServiceEffect::Report(MissionEvent::TaskWithdrawn { task }));
     }
@@ -577,13 +549,13 @@ fn withdraw<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects)
 }
 
 /// No robot can service the task that is pursued: those who pursue it stop, and its team is dissolved.
-fn give_up<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
-    let announced = place.announced()?;
+fn give_up<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
+    let announced = point.announced()?;
     let task = announced.task;
     let (outcome, reason) = match point.heard_failure() {
         Some((outcome, reason)) => (outcome, reason.to_string()),
         None if point.is_election_over() => point.why_no_bid(task),
-        None => (Outcome::Blocked, point.why_unanswered(&announced)),
+        None => (Outcome::Blocked, point.why_unanswered(announced)),
     };
     effects.extend([
         ServiceEffect::GiveUp(task, outcome),
@@ -599,19 +571,15 @@ fn give_up<A: KnowsTask>(place: &A, point: &AccessPoint, effects: &mut Effects) 
 }
 
 /// A task is over that is not pursued.
-fn close<A: Clone>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<A> {
+fn close(_: &Serving, point: &AccessPoint, effects: &mut Effects) -> Option<()> {
     let (task, event) = point.next_closing()?;
     effects.extend([ServiceEffect::Close(task), ServiceEffect::Report(event)]);
-    Some(place.clone())
+    Some(())
 }
 
 /// The task is announced again, to the robots that are left.
-fn announce_again<A: KnowsTask>(
-    place: &A,
-    point: &AccessPoint,
-    effects: &mut Effects,
-) -> Option<Electing> {
-    let Announced { task, roster, unanswered, .. } = place.announced()?;
+fn announce_again<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Electing> {
+    let Announced { task, roster, unanswered, .. } = point.announced()?.clone();
     let announcement = point.announcement_of(task)?;
     let is_in_vain = !point.misses_robot() && !point.hears_failure();
     let is_unanswered = is_in_vain && !point.is_election_over();
@@ -689,42 +657,13 @@ fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) 
 
 type Row = Transfer<Service, ServiceEvent, AccessPoint>;
 
-fn election_heard<A: DataOf<Serving> + KnowsTask>() -> Row {
-    let (guard, name) = (guards::election_heard(), "take up the election");
-    Transfer::where_known(ServiceEvent::ElectionHeard, guard, name, hear_election::<A>)
-}
-
-fn progress_heard<A: DataOf<Serving> + KnowsTask>() -> Row {
-    let (guard, name) = (guards::progress_heard(), "take up the notice");
-    Transfer::where_known(ServiceEvent::ProgressHeard, guard, name, hear_progress::<A>)
-}
-
-fn service_heard<A: DataOf<Serving>>() -> Row {
-    let (guard, name) = (guards::service_heard(), "take up the notice");
-    Transfer::where_known(ServiceEvent::ServiceHeard, guard, name, hear_service::<A>)
-}
-
-fn end_heard<A: DataOf<Serving>>() -> Row {
-    let (guard, name) = (guards::end_heard(), "take up the notice");
-    Transfer::where_known(ServiceEvent::EndHeard, guard, name, hear_end::<A>)
-}
-
 fn announces<A: DataOf<Serving>>(guard: Guard) -> Row {
     Transfer::where_known(ServiceEvent::Announces, guard, "announce the next task", announce::<A>)
 }
 
-fn announces_again<A: DataOf<Serving> + KnowsTask>(guard: Guard) -> Row {
+fn announces_again<A: DataOf<Serving>>(guard: Guard) -> Row {
     let name = "announce the task again";
     Transfer::where_known(ServiceEvent::AnnouncesAgain, guard, name, announce_again::<A>)
-}
-
-fn withdraws<A: DataOf<Serving> + KnowsTask>() -> Row {
-    let (guard, name) = (guards::withdraws(), "announce that the task is taken back");
-    Transfer::where_known(ServiceEvent::Withdraws, guard, name, withdraw::<A>)
-}
-
-fn closes<A: DataOf<Serving> + Clone>() -> Row {
-    Transfer::where_known(ServiceEvent::Closes, guards::closes(), "close the task", close::<A>)
 }
 
 fn no_robot<A: DataOf<Serving>>(guard: Guard) -> Row {
@@ -737,7 +676,7 @@ fn all_serviced<A: DataOf<Serving>>(guard: Guard) -> Row {
     Transfer::new(ServiceEvent::AllServiced, guard, name, finish::<A>)
 }
 
-fn gives_up<A: DataOf<Serving> + KnowsTask>(guard: Guard) -> Row {
+fn gives_up<A: DataOf<Serving>>(guard: Guard) -> Row {
     let name = "announce that the task is given up";
     Transfer::where_known(ServiceEvent::GivesUp, guard, name, give_up::<A>)
 }
@@ -751,33 +690,50 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
     Automaton::builder(SERVICE, Service::Gathering)
         .observing()
         .at_most_one(&notices)
-        .carried_out(election_heard::<Gathering>())
-        .carried_out(election_heard::<Electing>())
-        .carried_out(election_heard::<UnderWay>())
-        .carried_out(election_heard::<Done>())
-        .carried_out(election_heard::<Over>())
-        .carried_out(progress_heard::<Gathering>())
-        .carried_out(progress_heard::<Electing>())
-        .carried_out(progress_heard::<UnderWay>())
-        .carried_out(progress_heard::<Done>())
-        .carried_out(progress_heard::<Over>())
-        .carried_out(service_heard::<Gathering>())
-        .carried_out(service_heard::<Electing>())
-        .carried_out(service_heard::<UnderWay>())
-        .carried_out(service_heard::<Done>())
-        .carried_out(service_heard::<Over>())
-        .carried_out(end_heard::<Gathering>())
-        .carried_out(end_heard::<Electing>())
-        .carried_out(end_heard::<UnderWay>())
-        .carried_out(end_heard::<Done>())
-        .carried_out(withdraws::<Electing>())
-        .carried_out(withdraws::<UnderWay>())
+        .carried_out(Transfer::from_any_where_known(
+            Service::ANY,
+            ServiceEvent::ElectionHeard,
+            guards::election_heard(),
+            "take up the election",
+            hear_election,
+        ))
+        .carried_out(Transfer::from_any_where_known(
+            Service::ANY,
+            ServiceEvent::ProgressHeard,
+            guards::progress_heard(),
+            "take up the notice",
+            hear_progress,
+        ))
+        .carried_out(Transfer::from_any_where_known(
+            Service::ANY,
+            ServiceEvent::ServiceHeard,
+            guards::service_heard(),
+            "take up the notice",
+            hear_service,
+        ))
+        .carried_out(Transfer::from_any_where_known(
+            Service::OPEN,
+            ServiceEvent::EndHeard,
+            guards::end_heard(),
+            "take up the notice",
+            hear_end,
+        ))
+        .carried_out(Transfer::from_any_where_known(
+            Service::PURSUING,
+            ServiceEvent::Withdraws,
+            guards::withdraws(),
+            "announce that the task is taken back",
+            withdraw,
+        ))
+        .carried_out(Transfer::staying_in(
+            Service::OPEN,
+            ServiceEvent::Closes,
+            guards::closes(),
+            "close the task",
+            close,
+        ))
         .carried_out(gives_up::<Electing>(guards::gives_up_election()))
         .carried_out(gives_up::<UnderWay>(guards::gives_up()))
-        .carried_out(closes::<Gathering>())
-        .carried_out(closes::<Electing>())
-        .carried_out(closes::<UnderWay>())
-        .carried_out(closes::<Done>())
         .carried_out(announces::<Gathering>(guards::announces_first()))
         .carried_out(announces::<Done>(guards::announces_next()))
         .carried_out(announces_again::<Electing>(guards::elects_again()))

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use pleach_discrete::network::{
     Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Phase, Post, PostId, PostKind, Role,
 };
-use pleach_discrete::{Event as _, Location as _};
+use pleach_discrete::{Event as _, Location as _, Superstate};
 use pleach_guards::network::duty as guards;
 use pleach_guards::{EvaluationError, Guard};
 
@@ -336,9 +336,14 @@ fn lead(standby: &Standby, _: &Robot, effects: &mut Effects) -> Leading {
 }
 
 /// Where something depends on a redundant robot, its post is one of the tree from now on.
-fn bind<A: Holder>(duty: &A, _: &Robot, effects: &mut Effects) -> Bound {
+fn bind(duty: &Duty, _: &Robot, effects: &mut Effects) -> Option<Bound> {
     effects.push(DutyEffect::Restart);
-    Bound(with_kind(*duty.held(), PostKind::Fixed))
+    Some(Bound(with_kind(*duty.held()?, PostKind::Fixed)))
+}
+
+/// Its own post joins the tree again.
+fn bind_again(leading: &Leading, robot: &Robot, effects: &mut Effects) -> Option<Bound> {
+    bind(&leading.into_place(), robot, effects)
 }
 
 /// The same post as before, held in another way.
@@ -346,9 +351,9 @@ fn keep<A: Holder, B: From<Held>>(duty: &A, _: &Robot, _: &mut Effects) -> B {
     B::from(*duty.held())
 }
 
-fn join_path<A: Holder + Copy + DataOf<Duty>>(duty: &A, robot: &Robot, _: &mut Effects) -> Waiting {
+fn join_path(duty: &Duty, robot: &Robot, _: &mut Effects) -> Option<Waiting> {
     let place = robot.coming_place().unwrap_or_default();
-    Waiting { held: *duty.held(), place, role: duty.into_place().role() }
+    Some(Waiting { held: *duty.held()?, place, role: duty.role() })
 }
 
 fn await_release(bound: &Bound, robot: &Robot, _: &mut Effects) -> AwaitingRelease {
@@ -443,8 +448,8 @@ fn leave_unused_post(bound: &Bound, robot: &Robot, effects: &mut Effects) -> Lea
     Leading(with_kind(bound.0, PostKind::Primary { follows: None }))
 }
 
-fn settle<A: Holder>(duty: &A, robot: &Robot, _: &mut Effects) -> Relay {
-    Relay(fixed_here(duty.held(), robot))
+fn settle(duty: &Duty, robot: &Robot, _: &mut Effects) -> Option<Relay> {
+    Some(Relay(fixed_here(duty.held()?, robot)))
 }
 
 fn fixed_here(held: &Held, robot: &Robot) -> Held {
@@ -507,34 +512,22 @@ fn take_over<A, B: DataOf<Duty> + Copy>(_: &A, robot: &Robot, effects: &mut Effe
 
 type Row = Transfer<Activity, DutyEvent, Robot>;
 
-/// The transitions in which a robot under way and a parked one exchange their duties.
-macro_rules! exchanges {
-    ($automaton:expr, $($mover:ident: [$($parked:ident),*]),*) => {
-        $automaton$($(
-            .carried_out(exchange::<$mover, $parked>())
-            .carried_out(exchange::<$parked, $mover>())
-        )*)*
-    };
+/// The robot takes over a duty of this kind from a partner, in exchange for its own.
+fn exchange<B: DataOf<Duty> + Copy>(own: Superstate<Activity>) -> Row {
+    let (activity, name) = (B::LOCATION, TAKE_OVER);
+    let guard = guards::takes(activity.name());
+    let take_over = take_over::<Duty, B>;
+    Transfer::from_any_where_known(own, activity.taken_over(), guard, name, take_over)
 }
 
-fn exchange<A: DataOf<Duty>, B: DataOf<Duty> + Copy>() -> Row {
-    let activity = B::LOCATION;
-    let name = "take over the partner's duty";
-    Transfer::where_known(
-        activity.taken_over(),
-        guards::takes(activity.name()),
-        name,
-        take_over::<A, B>,
-    )
+/// The same for one kind of duty of its own.
+fn exchange_of<A: DataOf<Duty>, B: DataOf<Duty> + Copy>() -> Row {
+    let (activity, name) = (B::LOCATION, TAKE_OVER);
+    let guard = guards::takes(activity.name());
+    Transfer::where_known(activity.taken_over(), guard, name, take_over::<A, B>)
 }
 
-fn bound<A: DataOf<Duty> + Holder>() -> Row {
-    Transfer::new(DutyEvent::Bound, guards::bound(), "lead, bound to its post", bind::<A>)
-}
-
-fn path_joined<A: DataOf<Duty> + Holder + Copy>() -> Row {
-    Transfer::new(DutyEvent::PathJoined, guards::path_joined(), "wait on Σ", join_path::<A>)
-}
+const TAKE_OVER: &str = "take over the partner's duty";
 
 fn reached<B: DataOf<Duty> + From<Held>>(event: DutyEvent, guard: Guard) -> Row {
     Transfer::where_known(event, guard, "take the post ahead", take_post_ahead::<B>)
@@ -542,10 +535,6 @@ fn reached<B: DataOf<Duty> + From<Held>>(event: DutyEvent, guard: Guard) -> Row 
 
 fn kept<B: DataOf<Duty> + From<Held>>(event: DutyEvent, guard: Guard) -> Row {
     Transfer::new(event, guard, "keep the post", leave_path::<B>)
-}
-
-fn settled<A: DataOf<Duty> + Holder>() -> Row {
-    Transfer::new(DutyEvent::Settled, guards::dissolved(), "make the post a fixed one", settle::<A>)
 }
 
 fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
@@ -587,7 +576,7 @@ fn labels(step: &'static str) -> [&'static str; 16] {
 /// Never with the table and guards of this crate; they are still checked.
 pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
     use DutyEvent as On;
-    let automaton = Automaton::builder(DUTIES, Activity::Standby)
+    Automaton::builder(DUTIES, Activity::Standby)
         .observing()
         .commanding(&targets())
         .at_most_one(&labels("called_off"))
@@ -601,15 +590,18 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             leave_post::<Standby>,
         ))
         .carried_out(Transfer::new(On::Elected, guards::elected(), "lead", lead))
-        .carried_out(bound::<Standby>())
-        .carried_out(bound::<Relay>())
-        .carried_out(bound::<Junction>())
-        .carried_out(bound::<Leaf>())
-        .carried_out(Transfer::new(
-            DutyEvent::Burdened,
+        .carried_out(Transfer::from_any_where_known(
+            Activity::UNINVOLVED,
+            On::Bound,
+            guards::bound(),
+            "lead, bound to its post",
+            bind,
+        ))
+        .carried_out(Transfer::where_known(
+            On::Burdened,
             guards::burdened(),
             "lead, bound to its post",
-            bind::<Leading>,
+            bind_again,
         ))
         .carried_out(Transfer::new(
             On::RelayResumed,
@@ -629,10 +621,13 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             "service the task from its post",
             service_from_post,
         ))
-        .carried_out(path_joined::<Standby>())
-        .carried_out(path_joined::<Relay>())
-        .carried_out(path_joined::<Junction>())
-        .carried_out(path_joined::<Leaf>())
+        .carried_out(Transfer::from_any_where_known(
+            Activity::UNINVOLVED,
+            On::PathJoined,
+            guards::path_joined(),
+            "wait on Σ",
+            join_path,
+        ))
         .carried_out(Transfer::new(
             On::PathJoined,
             guards::path_joined(),
@@ -689,8 +684,13 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             "service the task from here",
             service,
         ))
-        .carried_out(settled::<Leading>())
-        .carried_out(settled::<Following>())
+        .carried_out(Transfer::from_any_where_known(
+            Activity::IN_TEAM,
+            On::Settled,
+            guards::dissolved(),
+            "make the post a fixed one",
+            settle,
+        ))
         .carried_out(Transfer::new(On::SetOut, guards::set_out(), "leave the post", set_out))
         .carried_out(attached::<Standby>())
         .carried_out(attached::<Relay>())
@@ -723,11 +723,20 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             "keep the post",
             keep::<Junction, Relay>,
         ))
-        .carried_out(Transfer::new(On::Retired, guards::retired(), "give the post up", retire));
-    let automaton = automaton.carried_out(exchange::<Following, Following>());
-    exchanges!(automaton,
-        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Following, Leading],
-        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Leading],
-        Leading: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease])
-    .build()
+        .carried_out(Transfer::new(On::Retired, guards::retired(), "give the post up", retire))
+        .carried_out(exchange::<Standby>(Activity::UNDER_WAY))
+        .carried_out(exchange::<Relay>(Activity::UNDER_WAY))
+        .carried_out(exchange::<Junction>(Activity::UNDER_WAY))
+        .carried_out(exchange::<Leaf>(Activity::UNDER_WAY))
+        .carried_out(exchange::<Bound>(Activity::UNDER_WAY))
+        .carried_out(exchange::<Waiting>(Activity::UNDER_WAY))
+        .carried_out(exchange::<AwaitingRelease>(Activity::UNDER_WAY))
+        .carried_out(exchange::<Shifting>(Activity::AT_REST))
+        .carried_out(exchange::<Following>(Activity::AT_REST))
+        .carried_out(exchange::<Leading>(Activity::AT_REST))
+        .carried_out(exchange::<Shifting>(Activity::IN_TEAM))
+        .carried_out(exchange::<Following>(Activity::UNDER_WAY))
+        .carried_out(exchange_of::<Shifting, Leading>())
+        .carried_out(exchange_of::<Following, Leading>())
+        .build()
 }

@@ -215,7 +215,7 @@ fn withdraw_refusal<A: HasOffers, B: From<Offers<Duty>>>(
     Some(B::from(offers))
 }
 
-fn lose_partner<A>(_: &A, robot: &Robot, _: &mut Effects) -> Free {
+fn lose_partner(_: &Exchange, robot: &Robot, _: &mut Effects) -> Free {
     Free(Offers::numbered_after(robot.offers().offers_made()))
 }
 
@@ -267,11 +267,6 @@ where
     Transfer::where_known(ExchangeEvent::RefusalInVain, guard, name, reset)
 }
 
-fn partner_lost<A: DataOf<Exchange>>() -> Row {
-    let (guard, name) = (guards::partner_lost(), "begin again");
-    Transfer::new(ExchangeEvent::PartnerLost, guard, name, lose_partner::<A>)
-}
-
 /// The automaton of the exchange of duties.
 ///
 /// # Errors
@@ -304,9 +299,13 @@ pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
             "take the duty offered",
             conclude::<Giving, Free>,
         ))
-        .carried_out(partner_lost::<Offering>())
-        .carried_out(partner_lost::<OfferingAndRefusing>())
-        .carried_out(partner_lost::<Giving>())
+        .carried_out(Transfer::from_any(
+            ExchangeStage::ENGAGED,
+            On::PartnerLost,
+            guards::partner_lost(),
+            "begin again",
+            lose_partner,
+        ))
         .build()
 }
 

@@ -44,7 +44,7 @@ pub(super) fn begin_election<A>(
 /// The robots that it hears go by an announcement that it has not received, because it has begun
 /// or restarted since. If it is one of those that elected by it, or Σ leads over it, it has forgotten what became of
 /// that.
-pub(super) fn learn<A: Clone>(phase: &A, robot: &Robot, effects: &mut Effects) -> Option<A> {
+pub(super) fn learn<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<()> {
     let announced = robot.newer_announcement()?.clone();
     let is_on_path = match robot.notice() {
         Notice::Path(path) => path.hops.iter().any(|hop| hop.robot == robot.id),
@@ -53,7 +53,7 @@ pub(super) fn learn<A: Clone>(phase: &A, robot: &Robot, effects: &mut Effects) -
     let has_forgotten = announced.1.roster.contains(robot.id) || is_on_path;
     effects.push(MissionEffect::Learn(announced));
     effects.extend(has_forgotten.then_some(MissionEffect::Forgotten));
-    Some(phase.clone())
+    Some(())
 }
 
 /// Every token is known: the winner leads, at once or after it has been released.

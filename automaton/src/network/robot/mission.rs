@@ -159,36 +159,9 @@ pub(super) fn end<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
     Ended { walk: robot.mission.walk().filter(|_| is_on_its_way) }
 }
 
-fn ended<A: DataOf<Mission>>() -> Row {
-    Transfer::new(MissionStep::Ended, guards::ended(), "stop", end::<A>)
-}
-
-fn announced<A: DataOf<Mission>>() -> Row {
-    let name = "place a bid for the task";
-    Transfer::where_known(
-        MissionStep::Announced,
-        guards::announced(),
-        name,
-        leader::begin_election::<A>,
-    )
-}
-
-fn overtaken<A: DataOf<Mission>>() -> Row {
-    Transfer::new(MissionStep::Overtaken, guards::overtaken(), "wait", keep_up::<A>)
-}
-
 fn keep_up<A>(_: &A, _: &Robot, effects: &mut Effects) -> Idle {
     effects.extend([MissionEffect::KeepUp, MissionEffect::ForgetRoute]);
     Idle
-}
-
-fn serviced<A: DataOf<Mission>>() -> Row {
-    Transfer::new(MissionStep::Serviced, guards::serviced(), "wait", team::wait::<A>)
-}
-
-fn informed<A: DataOf<Mission> + Clone>() -> Row {
-    let name = "go by the announcement";
-    Transfer::where_known(MissionStep::Informed, guards::informed(), name, leader::learn::<A>)
 }
 
 fn called<A: DataOf<Mission>>(guard: Guard) -> Row {
@@ -222,47 +195,60 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         "overtaken",
         "announcement_heard",
     ];
+    let bid = "place a bid for the task";
     Automaton::builder(MISSION, Phase::Idle)
         .observing()
         .at_most_one(&notices)
         .at_most_one(&["won", "unaided"])
         .at_most_one(&["subgroup_arrived", "relieved"])
-        .carried_out(ended::<Idle>())
-        .carried_out(ended::<LeaderElection>())
-        .carried_out(ended::<Advance>())
-        .carried_out(ended::<RecruitElection>())
-        .carried_out(ended::<PathAgreement>())
-        .carried_out(ended::<Shift>())
-        .carried_out(announced::<Idle>())
-        .carried_out(announced::<LeaderElection>())
-        .carried_out(announced::<Advance>())
-        .carried_out(announced::<RecruitElection>())
-        .carried_out(announced::<PathAgreement>())
-        .carried_out(announced::<Shift>())
-        .carried_out(announced::<Ended>())
-        .carried_out(overtaken::<LeaderElection>())
-        .carried_out(overtaken::<Advance>())
-        .carried_out(overtaken::<RecruitElection>())
-        .carried_out(overtaken::<PathAgreement>())
-        .carried_out(overtaken::<Shift>())
-        .carried_out(overtaken::<Ended>())
-        .carried_out(serviced::<LeaderElection>())
-        .carried_out(serviced::<Advance>())
-        .carried_out(serviced::<RecruitElection>())
-        .carried_out(serviced::<PathAgreement>())
-        .carried_out(serviced::<Shift>())
+        .carried_out(Transfer::from_any(
+            Phase::OPEN,
+            Step::Ended,
+            guards::ended(),
+            "stop",
+            end::<Mission>,
+        ))
+        .carried_out(Transfer::from_any_where_known(
+            Phase::OPEN,
+            Step::Announced,
+            guards::announced(),
+            bid,
+            leader::begin_election::<Mission>,
+        ))
+        .carried_out(Transfer::where_known(
+            Step::Announced,
+            guards::announced(),
+            bid,
+            leader::begin_election::<Ended>,
+        ))
+        .carried_out(Transfer::from_any(
+            Phase::PURSUING,
+            Step::Overtaken,
+            guards::overtaken(),
+            "wait",
+            keep_up::<Mission>,
+        ))
+        .carried_out(Transfer::new(Step::Overtaken, guards::overtaken(), "wait", keep_up::<Ended>))
+        .carried_out(Transfer::from_any(
+            Phase::PURSUING,
+            Step::Serviced,
+            guards::serviced(),
+            "wait",
+            team::wait::<Mission>,
+        ))
         .carried_out(Transfer::where_known(
             Step::Repeated,
             guards::repeated(),
             "announce the service again",
             team::announce_service_again,
         ))
-        .carried_out(informed::<Idle>())
-        .carried_out(informed::<LeaderElection>())
-        .carried_out(informed::<Advance>())
-        .carried_out(informed::<RecruitElection>())
-        .carried_out(informed::<PathAgreement>())
-        .carried_out(informed::<Shift>())
+        .carried_out(Transfer::staying_in(
+            Phase::OPEN,
+            Step::Informed,
+            guards::informed(),
+            "go by the announcement",
+            leader::learn::<Mission>,
+        ))
         .carried_out(called::<Idle>(guards::called()))
         .carried_out(called::<LeaderElection>(guards::called()))
         .carried_out(called::<Advance>(guards::called()))
