@@ -139,8 +139,9 @@ Every robot runs the first five of these automata over its own state, every acce
 them once for each robot), and the user the last. The pictures are drawn from the tables that run; select one to enlarge
 it. A transition reads `event [guard] / reset (urgency, priority)`. All are taken *at once*; if several are enabled, the
 one with the smallest priority number is taken. A location shows its flow, its invariant after \"while\", and what is
-chosen there at each sample. `pleach diagram duty --format mermaid` prints an automaton as text, with every guard, reset
-and target; [coverage](coverage.md) counts the rows.
+chosen there at each sample. A bracket is a [superstate](how-to/model.md#superstates): where the tables declare one
+transition from it, the drawing has a dot on each of its locations. `pleach diagram duty --format mermaid` prints an
+automaton as text, with every guard, reset and target; [coverage](coverage.md) counts the rows.
 
 A guard combines quantities and propositions that the node measures of its own state. The source defines each name
 beside its measurement: those of [robots](../automaton/src/network/robot/facts.rs), of [access

@@ -42,4 +42,5 @@ mod sliding;
 mod solver;
 mod steps;
 mod streams;
+mod superstates;
 mod two_forms;
