@@ -115,19 +115,17 @@ fn free_region(space: &FreeSpace, way: &Segment, radius: f64) -> Vec<HalfPlane> 
     let position = way.from;
     let tolerance = space.tolerance();
     let touch = TOUCH * tolerance;
-    let mut region = Vec::new();
     // Edges that rounding puts just outside the disc bound it too.
-    space.for_each_wall_near(position, radius + tolerance, |wall| {
-        let separating =
-            own_half_plane(wall, way, touch).or_else(|| half_plane_between(wall, way, touch));
-        // Back to the planning set, unless the way itself leaves it.
-        let retracted = separating.map(|plane| {
-            let offset = plane.offset - tolerance / 2.0;
-            HalfPlane { offset, ..plane }.widened_to(way.from).widened_to(way.to)
-        });
-        region.extend(retracted.filter(|plane| plane.margin(position) < radius));
+    let walls = space.walls_near(position, radius + tolerance);
+    let separating = walls.filter_map(|wall| {
+        own_half_plane(wall, way, touch).or_else(|| half_plane_between(wall, way, touch))
     });
-    region
+    // Back to the planning set, unless the way itself leaves it.
+    let retracted = separating.map(|plane| {
+        let offset = plane.offset - tolerance / 2.0;
+        HalfPlane { offset, ..plane }.widened_to(way.from).widened_to(way.to)
+    });
+    retracted.filter(|plane| plane.margin(position) < radius).collect()
 }
 
 /// The convex hull of `outside` and of the part of a region in the square around the beginning of

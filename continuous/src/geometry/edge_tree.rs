@@ -1,34 +1,36 @@
-//! A tree of boxes over edges: the questions that are asked of outlines with thousands of edges.
+//! A tree of boxes over edges, for queries on outlines with thousands of edges.
+//!
+//! parry provides the hierarchy of boxes. Boxes only rule edges out: an edge in a box that remains is decided by its own
+//! exact test or by its own distance, so that every answer is the one of a scan over all edges, whatever the hierarchy.
 
-use bvh::aabb::{Aabb, Bounded};
-use bvh::bounding_hierarchy::BHShape;
-use bvh::bvh::{Bvh, BvhNode};
+use std::cell::Cell;
+
+use parry2d_f64::bounding_volume::Aabb;
+use parry2d_f64::math::Vector as Corner;
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode, TraversalAction};
 
 use super::Segment;
 use super::segment::side;
 use crate::{Point, Vector};
 
-/// Relative rounding error that the test of a box against a path allows for: more than its dozen
-/// operations can sum up to.
+/// Relative rounding error that the tests of boxes allow for: more than the dozen operations of such a test, or of the
+/// distance to an edge, can sum up to.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// Edges under a hierarchy of bounding boxes.
 #[derive(Debug, Clone)]
 pub(super) struct EdgeTree {
     edges: Vec<Segment>,
-    /// The box around all edges, if there are any.
-    around: Option<Bounds>,
-    boxes: Bvh<f64, 2>,
+    boxes: Bvh,
 }
 
 impl EdgeTree {
     /// Coordinates are finite, and small enough for their squares.
     pub(super) fn new(edges: impl IntoIterator<Item = Segment>) -> EdgeTree {
         let edges: Vec<Segment> = edges.into_iter().collect();
-        let mut leaves: Vec<Bounds> = edges.iter().map(Bounds::of).collect();
-        let around = leaves.iter().copied().reduce(Bounds::union);
-        let boxes = Bvh::build(&mut leaves);
-        EdgeTree { edges, around, boxes }
+        let leaves = edges.iter().map(|edge| Bounds::of(edge).into()).enumerate();
+        let boxes = Bvh::from_iter(BvhBuildStrategy::Binned, leaves);
+        EdgeTree { edges, boxes }
     }
 
     pub(super) fn edges(&self) -> &[Segment] {
@@ -53,11 +55,11 @@ impl EdgeTree {
 
     /// Whether `point` lies in the box around all edges.
     pub(super) fn surrounds(&self, point: Point) -> bool {
-        self.around.is_some_and(|around| around.holds(point))
+        self.around().holds(point)
     }
 
-    /// Visits every edge that a ray from `point` to the right crosses, by its index. Exact, but for
-    /// points on an edge, which may be visited or not.
+    /// Visits every edge that a ray from `point` to the right crosses, by its index, in no particular order. Exact, but
+    /// for points on an edge, which may be visited or not.
     pub(super) fn for_each_right_of(&self, point: Point, mut visit: impl FnMut(usize)) {
         self.any(
             |bounds| {
@@ -80,10 +82,11 @@ impl EdgeTree {
         self.nearest(point).map_or(f64::INFINITY, |(_, nearest)| (nearest - point).norm())
     }
 
-    /// The nearest edge, by its index, and its point nearest to `point`.
+    /// The nearest edge, by its index, and its point nearest to `point`. Of several, the first.
     pub(super) fn nearest(&self, point: Point) -> Option<(usize, Point)> {
+        let around = self.widened(Bounds::at(point));
         let (_, index) = self.least(
-            |bounds| bounds.distance_squared(point),
+            |bounds| bounds.gap_squared(&around),
             |edge| (edge.nearest(point) - point).norm_squared(),
         )?;
         Some((index, self.edges[index].nearest(point)))
@@ -91,16 +94,17 @@ impl EdgeTree {
 
     /// Distance from `path` to the nearest edge; 0 if they meet, infinite without edges.
     pub(super) fn distance_to_segment(&self, path: &Segment) -> f64 {
-        let around = Bounds::of(path);
-        let nearest = self.least(|bounds| bounds.gap(&around), |edge| edge.distance_to(path));
+        let around = self.widened(Bounds::of(path));
+        let nearest =
+            self.least(|bounds| bounds.gap_squared(&around).sqrt(), |edge| edge.distance_to(path));
         nearest.map_or(f64::INFINITY, |(distance, _)| distance)
     }
 
     /// Whether `path` meets an edge or comes closer to one than `distance`.
     pub(super) fn is_near(&self, path: &Segment, distance: f64) -> bool {
-        let around = Bounds::of(path);
+        let around = self.widened(Bounds::of(path));
         self.any(
-            |bounds| bounds.gap(&around) <= distance,
+            |bounds| bounds.gap_squared(&around) <= distance * distance,
             |_, edge| {
                 let apart = edge.distance_to(path);
                 apart < distance || apart == 0.0
@@ -108,112 +112,88 @@ impl EdgeTree {
         )
     }
 
-    /// Visits every edge with a point within `radius` of `center`, with its index.
-    pub(super) fn for_each_near(
-        &self,
-        center: Point,
-        radius: f64,
-        mut visit: impl FnMut(usize, &Segment),
-    ) {
-        self.any(
-            |bounds| bounds.distance_squared(center) <= radius * radius,
-            |index, edge| {
-                if edge.distance(center) <= radius {
-                    visit(index, edge);
-                }
-                false
-            },
-        );
+    /// The edges with a point within `radius` of `center`, with their indices, ascending.
+    pub(super) fn near(&self, center: Point, radius: f64) -> Vec<(usize, &Segment)> {
+        let around = self.widened(Bounds::at(center));
+        self.all(
+            |bounds| bounds.gap_squared(&around) <= radius * radius,
+            |edge| edge.distance(center) <= radius,
+        )
     }
 
-    /// Visits every edge whose box meets that of `segment`, with its index.
-    pub(super) fn for_each_overlapping(
-        &self,
-        segment: &Segment,
-        mut visit: impl FnMut(usize, &Segment),
-    ) {
+    /// The edges whose boxes meet the box of `segment`, with their indices, ascending.
+    pub(super) fn overlapping(&self, segment: &Segment) -> Vec<(usize, &Segment)> {
         let around = Bounds::of(segment);
-        self.any(
-            |bounds| !bounds.is_apart_from(&around),
-            |index, edge| {
-                visit(index, edge);
-                false
-            },
-        );
+        self.all(|bounds| !bounds.is_apart_from(&around), |_| true)
     }
 
-    /// The least cost of an edge, with the first edge that has it, by its index. The cost of a box is no more than that
-    /// of any edge in it, up to rounding; by as much another edge may cost less.
+    /// The edges that `is_wanted`, with their indices, ascending. `may_hold` admits every box around any of them.
+    fn all(
+        &self,
+        may_hold: impl Fn(&Bounds) -> bool,
+        is_wanted: impl Fn(&Segment) -> bool,
+    ) -> Vec<(usize, &Segment)> {
+        let mut wanted = Vec::new();
+        self.any(may_hold, |index, edge| {
+            if is_wanted(edge) {
+                wanted.push((index, edge));
+            }
+            false
+        });
+        wanted.sort_unstable_by_key(|&(index, _)| index);
+        wanted
+    }
+
+    /// Visits edges in boxes that `may_hold` admits, in no particular order, until `is_wanted` holds for one; returns
+    /// whether it did.
+    fn any<'tree>(
+        &'tree self,
+        may_hold: impl Fn(&Bounds) -> bool,
+        mut is_wanted: impl FnMut(usize, &'tree Segment) -> bool,
+    ) -> bool {
+        let mut found = false;
+        self.boxes.traverse(|node| {
+            if !may_hold(&node.into()) {
+                return TraversalAction::Prune;
+            }
+            if let Some(index) = node.leaf_data() {
+                found = is_wanted(index as usize, &self.edges[index as usize]);
+            }
+            if found { TraversalAction::EarlyExit } else { TraversalAction::Continue }
+        });
+        found
+    }
+
+    /// The least cost of an edge, with the first edge that has it, by its index. A box costs no more than any edge in it.
+    /// What is not a number is never the least.
     fn least(
         &self,
         of_box: impl Fn(&Bounds) -> f64,
         of_edge: impl Fn(&Segment) -> f64,
     ) -> Option<(f64, usize)> {
-        let mut least = None;
-        if !self.edges.is_empty() {
-            self.lower(&mut least, 0, &of_box, &of_edge);
-        }
-        least
+        let least = Cell::new(None);
+        let below = |node: &BvhNode, _| of_box(&node.into());
+        let try_edge = |index: u32, _| {
+            let index = index as usize;
+            let cost = of_edge(&self.edges[index]);
+            if !cost.is_nan() && least.get().is_none_or(|least| (cost, index) < least) {
+                least.set(Some((cost, index)));
+            }
+            // parry enters boxes that cost less: with this, also those that cost as much, for an earlier edge.
+            Some(cost.next_up())
+        };
+        self.boxes.find_best(f64::INFINITY, below, try_edge);
+        least.get()
     }
 
-    /// Takes the least cost below a node, if it is less than the least so far, or as little and of an earlier edge. What
-    /// is not a number is never the least.
-    fn lower(
-        &self,
-        least: &mut Option<(f64, usize)>,
-        node: usize,
-        of_box: &impl Fn(&Bounds) -> f64,
-        of_edge: &impl Fn(&Segment) -> f64,
-    ) {
-        match &self.boxes.nodes[node] {
-            BvhNode::Leaf { shape_index: index, .. } => {
-                let found = (of_edge(&self.edges[*index]), *index);
-                if !found.0.is_nan() && least.is_none_or(|least| found < least) {
-                    *least = Some(found);
-                }
-            }
-            BvhNode::Node { child_l_index, child_l_aabb, child_r_index, child_r_aabb, .. } => {
-                let mut children = [
-                    (of_box(&child_l_aabb.into()), *child_l_index),
-                    (of_box(&child_r_aabb.into()), *child_r_index),
-                ];
-                if children[1].0 < children[0].0 {
-                    children.reverse();
-                }
-                for (cost, child) in children {
-                    if least.is_none_or(|(least, _)| cost <= least) {
-                        self.lower(least, child, of_box, of_edge);
-                    }
-                }
-            }
-        }
+    /// The box around all edges. Without edges, it is apart from every other.
+    fn around(&self) -> Bounds {
+        self.boxes.root_aabb().into()
     }
 
-    /// Visits the edges below every box that `enter` admits, until `visit` says that one settles
-    /// the question; tells whether one did.
-    fn any(
-        &self,
-        mut enter: impl FnMut(&Bounds) -> bool,
-        mut visit: impl FnMut(usize, &Segment) -> bool,
-    ) -> bool {
-        self.around.is_some_and(|around| enter(&around))
-            && self.any_below(0, &mut enter, &mut visit)
-    }
-
-    /// The same below a node whose box is admitted.
-    fn any_below(
-        &self,
-        node: usize,
-        enter: &mut impl FnMut(&Bounds) -> bool,
-        visit: &mut impl FnMut(usize, &Segment) -> bool,
-    ) -> bool {
-        match &self.boxes.nodes[node] {
-            BvhNode::Leaf { shape_index: index, .. } => visit(*index, &self.edges[*index]),
-            BvhNode::Node { child_l_index, child_l_aabb, child_r_index, child_r_aabb, .. } => {
-                enter(&child_l_aabb.into()) && self.any_below(*child_l_index, enter, visit)
-                    || enter(&child_r_aabb.into()) && self.any_below(*child_r_index, enter, visit)
-            }
-        }
+    /// A box widened by so much that no rounding error puts an edge nearer to its inside than the edge's box to it.
+    fn widened(&self, bounds: Bounds) -> Bounds {
+        bounds.widened(ROUNDING * (self.around().largest() + bounds.largest()))
     }
 }
 
@@ -224,24 +204,21 @@ pub(super) struct Bounds {
     high: Point,
 }
 
-impl From<&Aabb<f64, 2>> for Bounds {
-    fn from(corners: &Aabb<f64, 2>) -> Bounds {
-        Bounds { low: corners.min, high: corners.max }
+impl From<&BvhNode> for Bounds {
+    fn from(node: &BvhNode) -> Bounds {
+        node.aabb().into()
     }
 }
 
-impl Bounded<f64, 2> for Bounds {
-    fn aabb(&self) -> Aabb<f64, 2> {
-        Aabb::with_bounds(self.low, self.high)
+impl From<Aabb> for Bounds {
+    fn from(Aabb { mins, maxs }: Aabb) -> Bounds {
+        Bounds { low: Point::new(mins.x, mins.y), high: Point::new(maxs.x, maxs.y) }
     }
 }
 
-impl BHShape<f64, 2> for Bounds {
-    // Asked for only where a tree is changed after it is built.
-    fn set_bh_node_index(&mut self, _: usize) {}
-
-    fn bh_node_index(&self) -> usize {
-        0
+impl From<Bounds> for Aabb {
+    fn from(Bounds { low, high }: Bounds) -> Aabb {
+        Aabb { mins: Corner::new(low.x, low.y), maxs: Corner::new(high.x, high.y) }
     }
 }
 
@@ -254,10 +231,13 @@ impl Bounds {
         }
     }
 
+    fn at(point: Point) -> Bounds {
+        Bounds { low: point, high: point }
+    }
+
     /// The smallest box around some points.
     pub(super) fn around(points: impl Iterator<Item = Point>) -> Option<Bounds> {
-        let alone = |point| Bounds { low: point, high: point };
-        points.map(alone).reduce(Bounds::union)
+        points.map(Bounds::at).reduce(Bounds::union)
     }
 
     /// The smallest box around two.
@@ -275,23 +255,21 @@ impl Bounds {
         (0..2).all(|axis| self.low[axis] <= point[axis] && point[axis] <= self.high[axis])
     }
 
-    fn distance_squared(&self, point: Point) -> f64 {
-        let beyond = |axis: usize| {
-            (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0)
-        };
-        beyond(0).powi(2) + beyond(1).powi(2)
-    }
-
     fn is_apart_from(&self, other: &Bounds) -> bool {
         (0..2).any(|axis| self.low[axis] > other.high[axis] || other.low[axis] > self.high[axis])
     }
 
-    /// A lower bound of the distance between the boxes: 0 if they overlap.
-    fn gap(&self, other: &Bounds) -> f64 {
+    /// The square of the distance between the boxes: 0 if they overlap.
+    fn gap_squared(&self, other: &Bounds) -> f64 {
         let along = |axis: usize| {
             (self.low[axis] - other.high[axis]).max(other.low[axis] - self.high[axis]).max(0.0)
         };
-        Vector::new(along(0), along(1)).norm()
+        along(0).powi(2) + along(1).powi(2)
+    }
+
+    /// The largest magnitude of a coordinate.
+    fn largest(&self) -> f64 {
+        largest(self.low).max(largest(self.high))
     }
 
     /// Whether the box may meet a path: false only if a line parallel to an axis or to the path
@@ -334,7 +312,53 @@ fn largest(point: Point) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
     use super::*;
+
+    /// Near the points of a grid far from the origin: many distances are equal, or equal up to rounding.
+    fn place() -> impl Strategy<Value = Point> {
+        let coordinate = (0..6, 0..3)
+            .prop_map(|(cell, aside)| 1e3 + f64::from(cell) / 7.0 + f64::from(aside) * 1e-13);
+        (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y))
+    }
+
+    fn edge() -> impl Strategy<Value = Segment> {
+        (place(), place()).prop_map(|(from, to)| Segment::new(from, to))
+    }
+
+    fn scan(edges: &[Segment], is_wanted: impl Fn(&Segment) -> bool) -> Vec<(usize, &Segment)> {
+        edges.iter().enumerate().filter(|(_, edge)| is_wanted(edge)).collect()
+    }
+
+    proptest! {
+        #![proptest_config(cases::usually(500))]
+
+        #[test]
+        fn edges_are_those_of_a_scan(edges in vec(edge(), 1..40), path in edge(), point in place()) {
+            let tree = EdgeTree::new(edges.iter().copied());
+            let around = Bounds::of(&path);
+            let overlapping = scan(&edges, |edge| !Bounds::of(edge).is_apart_from(&around));
+            prop_assert_eq!(tree.overlapping(&path), overlapping);
+            let crossed = scan(&edges, |edge| edge.is_crossed_by(&path));
+            prop_assert_eq!(tree.is_crossed_by(&path), !crossed.is_empty());
+            let radius = edges[0].distance(point);
+            prop_assert_eq!(tree.near(point, radius), scan(&edges, |edge| edge.distance(point) <= radius));
+        }
+
+        #[test]
+        fn distances_are_those_of_a_scan(edges in vec(edge(), 1..40), path in edge(), point in place()) {
+            let tree = EdgeTree::new(edges.iter().copied());
+            let to_path = edges.iter().map(|edge| edge.distance_to(&path)).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(tree.distance_to_segment(&path), to_path);
+            prop_assert_eq!(tree.is_near(&path, to_path), to_path == 0.0);
+            prop_assert!(tree.is_near(&path, to_path.next_up()));
+            let squared = |edge: &Segment| (edge.nearest(point) - point).norm_squared();
+            let nearest = (0..edges.len()).min_by(|&one, &other| squared(&edges[one]).total_cmp(&squared(&edges[other])));
+            prop_assert_eq!(tree.nearest(point).map(|(index, _)| index), nearest);
+        }
+    }
 
     #[test]
     fn boxes_are_as_far_apart_as_their_nearest_points() {
@@ -343,12 +367,12 @@ mod tests {
             high: Point::new(high.0, high.1),
         };
         let own = bounds((0.0, 0.0), (1.0, 1.0));
-        for (other, gap) in [
-            (bounds((4.0, 5.0), (6.0, 6.0)), 5.0),
-            (bounds((-3.0, 0.5), (-2.0, 0.6)), 2.0),
+        for (other, squared) in [
+            (bounds((4.0, 5.0), (6.0, 6.0)), 25.0),
+            (bounds((-3.0, 0.5), (-2.0, 0.6)), 4.0),
             (bounds((0.5, 0.5), (2.0, 2.0)), 0.0),
         ] {
-            assert_eq!((own.gap(&other), other.gap(&own)), (gap, gap));
+            assert_eq!([own.gap_squared(&other), other.gap_squared(&own)], [squared; 2]);
         }
     }
 
@@ -366,10 +390,8 @@ mod tests {
         let tree = EdgeTree::new([edge]);
         assert_eq!(tree.nearest(Point::origin()), Some((0, edge.from)));
         for (reach, expected) in [(0.5, 0), (1.0, 1)] {
-            let mut met = 0;
             let path = Segment::new(Point::origin(), Point::new(reach, 0.0));
-            tree.for_each_overlapping(&path, |_, _| met += 1);
-            assert_eq!(met, expected);
+            assert_eq!(tree.overlapping(&path).len(), expected);
         }
     }
 

@@ -277,24 +277,18 @@ impl FreeSpace {
         })
     }
 
-    /// Visits the edges of the sight set within `radius` of `center`.
-    pub(super) fn for_each_wall_near(
-        &self,
-        center: Point,
-        radius: f64,
-        mut visit: impl FnMut(&Segment),
-    ) {
-        self.sight.tree.for_each_near(center, radius, |_, edge| visit(edge));
+    /// The edges of the sight set within `radius` of `center`, in their order.
+    pub(super) fn walls_near(&self, center: Point, radius: f64) -> impl Iterator<Item = &Segment> {
+        self.sight.tree.near(center, radius).into_iter().map(|(_, edge)| edge)
     }
 
-    /// Visits the edges of the planning set within `radius` of `center`.
-    pub(super) fn for_each_planning_wall_near(
+    /// The edges of the planning set within `radius` of `center`, in their order.
+    pub(super) fn planning_walls_near(
         &self,
         center: Point,
         radius: f64,
-        mut visit: impl FnMut(&Segment),
-    ) {
-        self.planning.tree.for_each_near(center, radius, |_, edge| visit(edge));
+    ) -> impl Iterator<Item = &Segment> {
+        self.planning.tree.near(center, radius).into_iter().map(|(_, edge)| edge)
     }
 
     /// Checks that both outlines keep the clearance and that the planning set lies within the

@@ -321,11 +321,11 @@ fn narrow_passages(space: &FreeSpace, discs: &[Disc]) -> Vec<Point> {
     let outer: Vec<Disc> = outer.collect();
     let mut places = Vec::new();
     for (at, circle) in outer.iter().enumerate() {
-        space.for_each_planning_wall_near(circle.center, circle.radius, |wall| {
+        for wall in space.planning_walls_near(circle.center, circle.radius) {
             places.extend(circle.crossings(wall));
             // Crossings on both sides of a corner may not see each other.
             places.extend(Some(wall.from).filter(|&corner| circle.contains(corner)));
-        });
+        }
         places.extend(outer[at + 1..].iter().flat_map(|other| circle.crossings_with(other)));
         places.extend(discs[at + 1..].iter().flat_map(|other| ends_of_gap(&discs[at], other)));
     }

@@ -320,7 +320,8 @@ impl Workspace {
     /// Whether a part of a segment lies in W, and not on ∂W alone.
     pub(super) fn holds_part_of(&self, path: &Segment) -> bool {
         let mut shares = vec![0.0, 1.0];
-        self.tree.for_each_overlapping(path, |_, edge| shares.extend(edge.shares_on(path)));
+        let overlapping = self.tree.overlapping(path);
+        shares.extend(overlapping.into_iter().flat_map(|(_, edge)| edge.shares_on(path)));
         shares.sort_by(f64::total_cmp);
         // Between two places where the segment meets ∂W, all of it lies in W, outside, or on ∂W.
         let mut middles = shares.windows(2).map(|part| path.at((part[0] + part[1]) / 2.0));
@@ -335,14 +336,14 @@ impl Workspace {
     }
 
     /// Visits the edges of ∂W with a point within `radius` of `center`, each with its number in
-    /// [`edges`](Self::edges), in no particular order.
+    /// [`edges`](Self::edges), ascending.
     pub fn for_each_edge_near(
         &self,
         center: Point,
         radius: f64,
-        visit: impl FnMut(usize, &Segment),
+        mut visit: impl FnMut(usize, &Segment),
     ) {
-        self.tree.for_each_near(center, radius, visit);
+        self.tree.near(center, radius).into_iter().for_each(|(index, edge)| visit(index, edge));
     }
 
     /// The larger side of the box around W.
@@ -420,13 +421,10 @@ fn pairs(
     let tree = EdgeTree::new(named.iter().map(|edge| edge.segment));
     (0..named.len()).filter_map(move |index| {
         let first = named[index];
-        let mut met: Option<usize> = None;
-        tree.for_each_overlapping(&first.segment, |other, edge| {
-            if other > index && are_related(&first.segment, edge) {
-                met = Some(met.map_or(other, |found| found.min(other)));
-            }
-        });
-        Some((first, named[met?]))
+        let is_met =
+            |&(other, edge): &(usize, &Segment)| other > index && are_related(&first.segment, edge);
+        let (met, _) = tree.overlapping(&first.segment).into_iter().find(is_met)?;
+        Some((first, named[met]))
     })
 }
 

@@ -7,6 +7,7 @@ mod free_space;
 mod geodesics;
 mod limits;
 mod neighbours;
+mod parry;
 mod plain;
 mod reentry;
 mod repair;

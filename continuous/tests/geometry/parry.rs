@@ -1,12 +1,7 @@
-//! Distances against parry, an independent library of shapes: clearance, separation, neighbours.
+//! Distances and neighbours against the shapes and queries of parry: clearance, separation, neighbours. Of parry, the
+//! package itself uses the hierarchy of boxes alone, whose answers its unit tests compare with a scan.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
-#[path = "../geometry/environments.rs"]
-#[allow(dead_code, reason = "other tests use more of it")]
-mod environments;
-
-use environments::{environment, place};
+use super::environments::{environment, place};
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Vector as Arrow};
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
