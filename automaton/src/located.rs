@@ -342,3 +342,144 @@ macro_rules! places_of {
         })+
     };
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_discrete::{Superstate, TransitionTable, from, from_any, transitions, vocabulary};
+    use pleach_guards::always;
+
+    use super::*;
+    use crate::{Automaton, BuildError};
+
+    places! {
+        /// What a lamp does.
+        enum Lamp: Lit {
+            Dark(Dark),
+            Dim(Dim),
+            Bright(Bright),
+        }
+    }
+    #[derive(Clone, Debug, PartialEq)]
+    struct Dark;
+    #[derive(Clone, Debug, PartialEq)]
+    struct Dim(u8);
+    #[derive(Clone, Debug, PartialEq)]
+    struct Bright(u8);
+
+    vocabulary! { enum Press: Event { On, More, Off, Count } }
+
+    const SHINING: Superstate<Lit> = Superstate::new("shining", &[Lit::Dim, Lit::Bright]);
+
+    struct Room {
+        lamp: Current<Lamp>,
+        counted: u8,
+    }
+
+    impl Valuation for Room {
+        fn value(&self, variable: &str) -> Option<f64> {
+            (variable == "counted").then_some(self.counted.into())
+        }
+    }
+
+    impl Holds<Lamp> for Room {
+        type Effects = u8;
+
+        fn current(&self) -> &Current<Lamp> {
+            &self.lamp
+        }
+
+        fn current_mut(&mut self) -> &mut Current<Lamp> {
+            &mut self.lamp
+        }
+
+        fn carry_out(&mut self, count: u8) {
+            self.counted += count;
+        }
+    }
+
+    type Row = Transfer<Lit, Press, Room>;
+
+    fn on() -> Row {
+        Transfer::new(Press::On, always(), "switch on", |_: &Dark, _: &Room, _: &mut u8| Dim(1))
+    }
+
+    fn brighten() -> Row {
+        let brighten = |dim: &Dim, _: &Room, _: &mut u8| Bright(dim.0 + 1);
+        Transfer::new(Press::More, always(), "brighten", brighten)
+    }
+
+    fn off() -> Row {
+        let off = |_: &Lamp, _: &Room, _: &mut u8| Dark;
+        Transfer::from_any(SHINING, Press::Off, always(), "switch off", off)
+    }
+
+    const TABLE: TransitionTable<Lit, Press> = transitions![Lit, Press;
+        from(Lit::Dark).on(Press::On).to(Lit::Dim),
+        from(Lit::Dim).on(Press::More).to(Lit::Bright),
+        from_any(SHINING).on(Press::Off).to(Lit::Dark).priority(1),
+    ];
+
+    #[test]
+    fn transfers_of_a_superstate_leave_each_of_its_places() {
+        const COUNTED: TransitionTable<Lit, Press> = transitions![Lit, Press;
+            from(Lit::Dark).on(Press::On).to(Lit::Bright),
+            from_any(SHINING).on(Press::Count).stay(),
+            from_any(SHINING).on(Press::Off).to(Lit::Dark).priority(1),
+            from(Lit::Bright).on(Press::More).to(Lit::Dim).priority(2),
+        ];
+        let few = || pleach_guards::variable("counted").less_than(3.0);
+        let count = |_: &Lamp, _: &Room, effects: &mut u8| {
+            *effects += 1;
+            Some(())
+        };
+        let automaton = Automaton::builder(COUNTED, Lit::Dark)
+            .carried_out(Transfer::new(
+                Press::On,
+                few(),
+                "switch on",
+                |_: &Dark, _: &Room, _: &mut u8| Bright(7),
+            ))
+            .carried_out(Transfer::staying_in(SHINING, Press::Count, few(), "count", count))
+            .carried_out(off())
+            .carried_out(Transfer::new(
+                Press::More,
+                always(),
+                "dim",
+                |bright: &Bright, _: &Room, _: &mut u8| Dim(bright.0 - 1),
+            ))
+            .build()
+            .unwrap();
+        let mut room = Room { lamp: Current::new(Lamp::Dark(Dark)), counted: 0 };
+        let mut step = || {
+            automaton.step_in_place::<Lamp>(&mut room).unwrap();
+            (Lamp::clone(&room.lamp), room.counted)
+        };
+        let bright = |counted| (Lamp::Bright(Bright(7)), counted);
+        assert_eq!([step(), step(), step(), step()], [0, 1, 2, 3].map(bright));
+        assert_eq!(step(), (Lamp::Dark(Dark), 3));
+        assert_eq!(step(), (Lamp::Dark(Dark), 3), "it has been counted often enough");
+    }
+
+    #[test]
+    fn a_row_or_a_location_that_nothing_is_said_of_is_refused() {
+        let build = |table: TransitionTable<'_, Lit, Press>, rows: Vec<Row>| {
+            let builder = Automaton::builder(table, Lit::Dark);
+            let built = rows.into_iter().fold(builder, |builder, row| builder.carried_out(row));
+            built.build().map(drop)
+        };
+        assert_eq!(build(TABLE, vec![on(), brighten(), off()]), Ok(()));
+        let row = BuildError::RowWithoutTransfer { location: "Dim", event: "Off" };
+        assert_eq!(build(TABLE, vec![on(), brighten()]), Err(row));
+        const TWO: TransitionTable<Lit, Press> = transitions![Lit, Press;
+            from(Lit::Dark).on(Press::On).to(Lit::Dim),
+        ];
+        let location = BuildError::LocationWithoutRow { location: "Bright" };
+        assert_eq!(build(TWO, vec![on()]), Err(location));
+        let transfer = BuildError::TransferWithoutRow {
+            source_location: "Dim",
+            event: "More",
+            target: "Bright",
+        };
+        assert_eq!(build(TWO, vec![on(), brighten()]), Err(transfer));
+    }
+}

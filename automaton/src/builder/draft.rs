@@ -202,7 +202,7 @@ impl<'a> Draft<'a> {
         superstates
     }
 
-    /// Finds the row of every transfer, and a transfer for every row if there are any.
+    /// Finds the row of every transfer; and, if there are any, a transfer for every row and a row for every location.
     fn match_transfers(&mut self) -> Result<(), BuildError> {
         let Parts { rows, transfers, .. } = self.parts;
         for (ends @ [source, event, target], given) in transfers {
@@ -219,6 +219,11 @@ impl<'a> Draft<'a> {
                 });
             }
             self.edges.push((row, given));
+        }
+        let mut locations = self.location_order.iter().filter(|_| !transfers.is_empty());
+        let is_in_row = |number: usize| self.parts.connected().any(|location| location == number);
+        if let Some(&number) = locations.find(|number| !is_in_row(**number)) {
+            return Err(BuildError::LocationWithoutRow { location: self.locations[number] });
         }
         let lacks = |number: &usize| self.given_for(*number).is_err();
         match (0..rows.len()).find(lacks).filter(|_| !self.edges.is_empty()) {

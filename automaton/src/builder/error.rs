@@ -26,6 +26,12 @@ pub enum BuildError {
         /// The location.
         location: &'static str,
     },
+    /// A location whose data transfers carry over occurs in no row of the table.
+    #[error("location `{location}` occurs in no row of the table: say what leads to it")]
+    LocationWithoutRow {
+        /// The location.
+        location: &'static str,
+    },
     /// Two rows share source and event, and do not both have a guard of their own.
     #[error("two rows of the table leave location `{location}` on event `{event}`: keep one")]
     Nondeterministic {

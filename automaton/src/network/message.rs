@@ -102,13 +102,17 @@ pub enum Message {
 impl Message {
     /// Whether its receiver may send something at once, and not only at its next tick.
     pub const fn may_be_answered_at_once(&self) -> bool {
-        matches!(
-            self,
-            Message::Demand(_)
-                | Message::Shortage
-                | Message::Probe(_)
-                | Message::News(_)
-                | Message::Proposal { witness: Some(_), .. }
-        )
+        match self {
+            Message::Demand(_) | Message::Shortage | Message::Probe(_) | Message::News(_) => true,
+            Message::Proposal { witness, .. } => witness.is_some(),
+            Message::Beacon { .. }
+            | Message::Multiplier { .. }
+            | Message::Flow(_)
+            | Message::AskFlow(_)
+            | Message::GrantFlow(_)
+            | Message::Objection { .. }
+            | Message::Consent { .. }
+            | Message::Request(_) => false,
+        }
     }
 }

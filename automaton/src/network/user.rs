@@ -211,6 +211,28 @@ impl User {
         PATIENCE + self.site.roll_validity()
     }
 
+    fn hear(&mut self, message: &Message, outputs: &mut NodeOutputs) -> Result<(), RobotError> {
+        match message {
+            Message::News(news) => {
+                self.news.merge(news);
+                self.silence = 0;
+                self.jump(outputs)
+            }
+            Message::Beacon { .. }
+            | Message::Multiplier { .. }
+            | Message::Flow(_)
+            | Message::Demand(_)
+            | Message::Shortage
+            | Message::AskFlow(_)
+            | Message::GrantFlow(_)
+            | Message::Probe(_)
+            | Message::Proposal { .. }
+            | Message::Objection { .. }
+            | Message::Consent { .. }
+            | Message::Request(_) => Ok(()),
+        }
+    }
+
     /// Takes a row, if one is enabled.
     fn jump(&mut self, outputs: &mut NodeOutputs) -> Result<(), RobotError> {
         let site = Arc::clone(&self.site);
@@ -244,14 +266,9 @@ impl Node for User {
     ) -> Result<(), RobotError> {
         match input {
             Input::Sensed(Sense::Tasks(tasks)) => self.tasks = tasks,
-            Input::Heard { message: Message::News(news), .. } => {
-                self.news.merge(news);
-                self.silence = 0;
-                self.jump(outputs)?;
-            }
+            Input::Heard { message, .. } => self.hear(message, outputs)?,
             Input::Tick { .. } => self.jump(outputs)?,
-            Input::Sensed(Sense::Position(_) | Sense::Fix(_) | Sense::Bodies(_))
-            | Input::Heard { .. } => {}
+            Input::Sensed(Sense::Position(_) | Sense::Fix(_) | Sense::Bodies(_)) => {}
         }
         Ok(())
     }

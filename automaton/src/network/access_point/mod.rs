@@ -396,8 +396,36 @@ impl AccessPoint {
         Ok(())
     }
 
+    fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut NodeOutputs) {
+        match message {
+            Message::Beacon { period, roll, beacon, .. } => self.hear_beacon(*period, roll, beacon),
+            Message::Request(order) => {
+                self.tasks.request(order);
+                self.keep_attendance();
+                self.has_news = true;
+            }
+            &Message::Proposal { period, segment, witness } if period == self.schedule.period() => {
+                self.membership.note(Wreck::setting_off(from, segment, period));
+                if witness == Some(self.id()) {
+                    outputs.send(from, Message::Consent { period });
+                }
+            }
+            Message::Multiplier { .. }
+            | Message::Flow(_)
+            | Message::Demand(_)
+            | Message::Shortage
+            | Message::AskFlow(_)
+            | Message::GrantFlow(_)
+            | Message::Probe(_)
+            | Message::Proposal { .. }
+            | Message::Objection { .. }
+            | Message::Consent { .. }
+            | Message::News(_) => {}
+        }
+    }
+
     /// Takes in a message with a beacon. Of one that has been late since an earlier control period only the roll counts.
-    fn receive(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
+    fn hear_beacon(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
         let is_later = roll.called > self.membership.roll().called;
         self.membership.receive_roll(roll);
         if is_later {
@@ -449,24 +477,9 @@ impl Node for AccessPoint {
         outputs: &mut NodeOutputs,
     ) -> Result<(), RobotError> {
         match input {
-            Input::Heard { message: Message::Beacon { period, roll, beacon, .. }, .. } => {
-                self.receive(*period, roll, beacon);
-            }
-            Input::Heard { message: Message::Request(order), .. } => {
-                self.tasks.request(order);
-                self.keep_attendance();
-                self.has_news = true;
-            }
-            Input::Heard { from, message: Message::Proposal { period, segment, witness } }
-                if *period == self.schedule.period() =>
-            {
-                self.membership.note(Wreck::setting_off(from, *segment, *period));
-                if *witness == Some(self.id()) {
-                    outputs.send(from, Message::Consent { period: *period });
-                }
-            }
+            Input::Heard { from, message } => self.hear(from, message, outputs),
             Input::Tick { .. } => self.tick(outputs)?,
-            Input::Heard { .. } | Input::Sensed(_) => {}
+            Input::Sensed(_) => {}
         }
         self.outbox.send_reports(outputs);
         Ok(())

@@ -70,7 +70,7 @@ fn it_knows_of_the_move_of_a_robot_that_asks_it_to() {
         let mut point = access_point();
         let west = Point::new(4.0, 5.0);
         point.schedule.join(7, true);
-        point.receive(7, &roll(7, &[]), &Arc::new(beacon(0, west)));
+        point.hear_beacon(7, &roll(7, &[]), &Arc::new(beacon(0, west)));
         let segment = Segment { from, to: from + Vector::new(0.06, 0.0) };
         let message = Message::Proposal { period, segment, witness: Some(witness) };
         let mut outputs = Outputs::of(2);
@@ -96,7 +96,7 @@ fn it_knows_of_the_move_of_a_robot_that_asks_it_to() {
 fn it_processes_what_has_changed() {
     let (mut point, all) = (access_point(), roll(1, &[]));
     let is_news = |point: &mut AccessPoint, beacon: &Arc<Beacon>| {
-        point.receive(1, &all, beacon);
+        point.hear_beacon(1, &all, beacon);
         let has_news = point.has_news;
         point.process_news().expect("guards have values");
         has_news
@@ -119,7 +119,7 @@ fn it_processes_what_has_changed() {
 fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
     let mut point = access_point();
     let mut told = |period: u32, roll: &Roll, beacons: Vec<Beacon>| {
-        beacons.into_iter().for_each(|beacon| point.receive(period, roll, &Arc::new(beacon)));
+        beacons.into_iter().for_each(|beacon| point.hear_beacon(period, roll, &Arc::new(beacon)));
         point.deliberate().expect("guards have values");
         point.public_state().wrecks.to_vec()
     };
@@ -144,13 +144,13 @@ fn robots_are_suspended_until_they_are_heard_by_an_access_point_that_begins_agai
     let absent = |is_new: bool| {
         let mut point = access_point();
         point.schedule.join(7, is_new);
-        point.receive(40, &roll(40, &[]), &Arc::new(beacon(0, HERE)));
+        point.hear_beacon(40, &roll(40, &[]), &Arc::new(beacon(0, HERE)));
         let mut absent = Vec::new();
         for period in 41..44 {
             point.schedule.join(period, point.schedule.is_new());
             point.call_roll().expect("guards have values");
             absent.push(point.membership.roll().absent.suspended.iter().collect::<Vec<_>>());
-            point.receive(period, &Roll::default(), &Arc::new(beacon(0, HERE)));
+            point.hear_beacon(period, &Roll::default(), &Arc::new(beacon(0, HERE)));
             point.survey_robots();
         }
         absent
@@ -166,7 +166,7 @@ fn who_is_gone_stays_gone_when_an_access_point_begins_again() {
     let mut point = access_point();
     let gone = Absent { gone: [1].into_iter().collect(), ..Absent::default() };
     let called = Roll { called: 40, absent: Arc::new(gone) };
-    point.receive(40, &called, &Arc::new(beacon(0, HERE)));
+    point.hear_beacon(40, &called, &Arc::new(beacon(0, HERE)));
     let mut standing = Vec::new();
     for period in 41..44 {
         point.schedule.join(period, point.schedule.is_new());
@@ -174,7 +174,7 @@ fn who_is_gone_stays_gone_when_an_access_point_begins_again() {
         let absent = &point.membership.roll().absent;
         standing.push((absent.gone.contains(1), absent.suspended.contains(1)));
         if period == 42 {
-            point.receive(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
+            point.hear_beacon(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
             point.survey_robots();
         }
     }
@@ -188,7 +188,7 @@ fn a_robot_that_knows_no_way_is_not_missed_while_it_is_heard() {
     for period in 1..30 {
         point.schedule.join(period, point.schedule.is_new());
         point.call_roll().expect("guards have values");
-        point.receive(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
+        point.hear_beacon(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
         point.survey_robots();
     }
     assert!(!point.membership.roll().absent.contains(1) && !point.roster.attending().contains(1));
@@ -200,7 +200,7 @@ fn a_robot_that_knows_no_way_is_not_waited_for_for_ever() {
     let mut point = access_point();
     point.is_asked(&[Task::at(THERE)], 1);
     for robot in [0, 1] {
-        point.receive(0, &Roll::default(), &Arc::new(beacon(robot, HERE)));
+        point.hear_beacon(0, &Roll::default(), &Arc::new(beacon(robot, HERE)));
         point.roster.attend(&Reports { below: IdSet::singleton(robot), ..Reports::default() });
     }
     let mut reports = Reports { below: [0].into_iter().collect(), ..Reports::default() };

@@ -173,22 +173,29 @@ impl Robot {
                 self.hear_roll(roll);
                 self.hear_beacon(*period, *confirmed, beacon);
             }
-            Message::Probe(probe) => {
-                self.reservation.receive_probe(context!(self), from, probe, outputs);
-            }
-            _ if self.is_planning_routes() => self.hear_of_routes(from, message, outputs),
-            _ => self.hear_of_flows_or_moves(from, message),
+            _ => self.hear_of_flows_or_moves(from, message, outputs),
         }
     }
 
-    /// Whether the plan of its routes can still change: what is heard later does not.
+    /// Whether the plan of its routes can still change: what is received later does not change it.
     fn is_planning_routes(&self) -> bool {
         matches!(self.stage(), Stage::OldFlows | Stage::Iterations | Stage::Sweeps)
     }
 
+    /// Of moves only what concerns this control period counts.
     #[inline(never)]
-    fn hear_of_routes(&mut self, from: NodeId, message: &Message, outputs: &mut NodeOutputs) {
+    fn hear_of_flows_or_moves(
+        &mut self,
+        from: NodeId,
+        message: &Message,
+        outputs: &mut NodeOutputs,
+    ) {
         match message {
+            Message::Multiplier { .. }
+            | Message::Flow(_)
+            | Message::Demand(_)
+            | Message::Shortage
+                if !self.is_planning_routes() => {}
             Message::Multiplier { report, parent } => {
                 self.routing.receive_report(context!(self), from, *report, *parent);
             }
@@ -197,19 +204,14 @@ impl Robot {
                 self.routing.receive_demand(context!(self), from, *more, outputs);
             }
             Message::Shortage => self.routing.receive_shortage(from, outputs),
-            _ => self.hear_of_flows_or_moves(from, message),
-        }
-    }
-
-    /// Of moves only what concerns this control period counts.
-    #[inline(never)]
-    fn hear_of_flows_or_moves(&mut self, from: NodeId, message: &Message) {
-        match message {
             Message::AskFlow(request) => {
                 self.reservation.receive_request(context!(self), from, *request);
             }
             Message::GrantFlow(grant) => {
                 self.reservation.receive_grant(context!(self), from, *grant);
+            }
+            Message::Probe(probe) => {
+                self.reservation.receive_probe(context!(self), from, probe, outputs);
             }
             Message::Proposal { period, .. }
             | Message::Objection { period }
@@ -220,7 +222,7 @@ impl Robot {
             }
             Message::Objection { .. } => self.yield_to_objection(),
             Message::Consent { .. } => self.negotiation.receive_consent(from),
-            _ => {}
+            Message::Beacon { .. } | Message::Request(_) | Message::News(_) => {}
         }
     }
 
