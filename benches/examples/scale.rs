@@ -5,8 +5,9 @@
 //! ```
 //!
 //! Each number of robots stands in a hall of its own, in which every robot hears twelve others and 49
-//! share an access point; without numbers 100, 1,000 and 10,000. Robots of a hall without tasks keep up
-//! their network only. Exponents are those of the power law through the first and the last hall.
+//! share an access point; without numbers 100, 1,000 and 10,000. Robots of a hall without tasks are at rest: they
+//! maintain their network only. In a busy hall the same robots pursue ten tasks. Exponents are those of the power law
+//! through the first and the last hall.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -24,12 +25,15 @@ const SIZES: [usize; 3] = [100, 1_000, 10_000];
 /// Control periods that count, after those in which the network gathers and its routes come to rest.
 const PERIODS: u32 = 10;
 const GATHERING: usize = 60;
+/// The tasks of a busy hall, and its first control periods, in which robots elect leaders and form teams.
+const TASKS: usize = 10;
+const BUSY_PERIODS: u32 = 40;
 
 /// What was measured in a hall.
 struct Row {
     robots: usize,
-    /// Seconds for reading the hall, the first control period, and one of those after it.
-    times: [f64; 3],
+    /// Seconds for reading the hall, the first control period, one at rest, and one of a busy hall.
+    times: [f64; 4],
     /// Bytes of memory that the mission takes.
     memory: Option<f64>,
 }
@@ -42,18 +46,23 @@ impl Row {
         (0..GATHERING).for_each(|_| course.pass_period());
         let ((), periods) = timed(|| (0..PERIODS).for_each(|_| course.pass_period()));
         let memory = resident().zip(before).map(|(after, before)| after - before);
-        Row { robots, times: [setup, first, periods / f64::from(PERIODS)], memory }
+        drop(course);
+        let mut busy = Course::new(&hall(robots, TASKS));
+        let ((), busy_periods) = timed(|| (0..BUSY_PERIODS).for_each(|_| busy.pass_period()));
+        let [at_rest, busy] =
+            [periods / f64::from(PERIODS), busy_periods / f64::from(BUSY_PERIODS)];
+        Row { robots, times: [setup, first, at_rest, busy], memory }
     }
 
     fn print(&self) {
-        let [setup, first, period] = self.times.map(|seconds| seconds * 1e3);
-        let each = period * 1e3 / self.robots as f64;
+        let [setup, first, at_rest, busy] = self.times.map(|seconds| seconds * 1e3);
+        let each = at_rest * 1e3 / self.robots as f64;
         let memory = self.memory.map_or("—".to_owned(), |bytes| {
             format!("{:.0} kB", bytes / 1e3 / self.robots as f64)
         });
         let robots = self.robots;
         println!(
-            "| {robots} | {setup:.1} ms | {first:.1} ms | {period:.2} ms | {each:.1} µs | {memory} |"
+            "| {robots} | {setup:.1} ms | {first:.1} ms | {at_rest:.2} ms | {each:.1} µs | {busy:.2} ms | {memory} |"
         );
     }
 }
@@ -72,8 +81,10 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    println!("| robots | set up | first period | period | a robot and period | memory a robot |");
-    println!("| --- | --- | --- | --- | --- | --- |");
+    println!(
+        "| robots | set up | first period | period at rest | a robot and period | busy period | memory a robot |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
     let mut rows = Vec::with_capacity(sizes.len());
     for robots in sizes {
         let row = Row::of(robots);
@@ -83,8 +94,8 @@ fn main() -> ExitCode {
     if let [first, .., last] = &rows[..] {
         let growth = (last.robots as f64 / first.robots as f64).ln();
         let exponent = |which: usize| (last.times[which] / first.times[which]).ln() / growth;
-        let [setup, first, period] = [0, 1, 2].map(exponent);
-        println!("| exponent | {setup:.2} | {first:.2} | {period:.2} | | |");
+        let [setup, first, at_rest, busy] = [0, 1, 2, 3].map(exponent);
+        println!("| exponent | {setup:.2} | {first:.2} | {at_rest:.2} | | {busy:.2} | |");
     }
     ExitCode::SUCCESS
 }
