@@ -185,12 +185,10 @@ impl Duty {
 
     /// The post that the robot held before this duty and handed over to another robot.
     pub const fn left(&self) -> Option<PostId> {
-        match self {
-            Duty::Shifting(shifting) => shifting.left,
-            _ => match self.held() {
-                Some(held) => held.left,
-                None => None,
-            },
+        match (self, self.held()) {
+            (Duty::Shifting(shifting), _) => shifting.left,
+            (_, Some(held)) => held.left,
+            (_, None) => None,
         }
     }
 
@@ -200,7 +198,13 @@ impl Duty {
             Duty::Waiting(Waiting { place, .. })
             | Duty::AwaitingRelease(AwaitingRelease { place, .. })
             | Duty::Shifting(Shifting { place, .. }) => Some(place),
-            _ => None,
+            Duty::Standby(_)
+            | Duty::Relay(_)
+            | Duty::Junction(_)
+            | Duty::Leaf(_)
+            | Duty::Bound(_)
+            | Duty::Following(_)
+            | Duty::Leading(_) => None,
         }
     }
 

@@ -117,20 +117,22 @@ vocabulary! {
 impl Activity {
     /// Whether the robot holds a fixed post of the tree, which must not be left unheld.
     pub const fn holds_fixed_post(self) -> bool {
-        matches!(
-            self,
+        match self {
             Activity::Relay
-                | Activity::Junction
-                | Activity::Leaf
-                | Activity::Bound
-                | Activity::Waiting
-                | Activity::AwaitingRelease
-        )
+            | Activity::Junction
+            | Activity::Leaf
+            | Activity::Bound
+            | Activity::Waiting
+            | Activity::AwaitingRelease => true,
+            Activity::Standby | Activity::Shifting | Activity::Following | Activity::Leading => {
+                false
+            }
+        }
     }
 
     /// Whether the robot is on its way and holds no fixed post.
     pub const fn is_under_way(self) -> bool {
-        matches!(self, Activity::Shifting | Activity::Following | Activity::Leading)
+        !matches!(self, Activity::Standby) && !self.holds_fixed_post()
     }
 
     /// Whether a robot with this activity can have this role (Sec. II and V-D). One on the path Σ

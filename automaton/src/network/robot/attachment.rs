@@ -53,7 +53,10 @@ impl Robot {
             Activity::Relay | Activity::Junction | Activity::Leaf | Activity::Bound => {
                 self.replace_parent().or_else(|| self.shorten_way())
             }
-            _ => None,
+            Activity::Standby
+            | Activity::Waiting
+            | Activity::AwaitingRelease
+            | Activity::Shifting => None,
         };
         let has_to_confirm = self.has_to_confirm(desired);
         self.tree.desire(desired, reattaches_to, has_to_confirm);

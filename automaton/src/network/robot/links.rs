@@ -76,7 +76,13 @@ impl Robot {
             Duty::Leading(_) | Duty::Following(_) => {
                 self.anchor().is_some() && parent.and_then(|node| self.neighbour(node)).is_none()
             }
-            _ => false,
+            Duty::Standby(_)
+            | Duty::Relay(_)
+            | Duty::Junction(_)
+            | Duty::Leaf(_)
+            | Duty::Bound(_)
+            | Duty::Waiting(_)
+            | Duty::AwaitingRelease(_) => false,
         }
     }
 
@@ -162,13 +168,11 @@ impl Robot {
 
     /// The post of a robot: on Σ, the post that it goes to.
     fn post_ahead_of(&self, node: &Neighbour) -> Option<Post> {
-        match node.beacon.duty {
-            Some(Duty::Shifting(Shifting { place, .. })) => {
-                let hop = self.mission.path().and_then(|path| path.hops.get(place + 1));
-                hop.map(|hop| hop.post)
-            }
-            _ => node.post().copied(),
-        }
+        let Some(Duty::Shifting(Shifting { place, .. })) = node.beacon.duty else {
+            return node.post().copied();
+        };
+        let hop = self.mission.path().and_then(|path| path.hops.get(place + 1));
+        hop.map(|hop| hop.post)
     }
 
     /// Whether the robot is near enough to those that are attached to the holder of this post and that it does not hear

@@ -44,7 +44,13 @@ impl Robot {
                 self.body.still_periods() >= PERSISTENCE
             }
             Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
-            _ => true,
+            Duty::Standby(_)
+            | Duty::Relay(_)
+            | Duty::Junction(_)
+            | Duty::Leaf(_)
+            | Duty::Bound(_)
+            | Duty::Waiting(_)
+            | Duty::AwaitingRelease(_) => true,
         }
     }
 

@@ -117,9 +117,19 @@ impl Robot {
             Duty::Following(_) | Duty::Leading(_) => match self.phase() {
                 Phase::Advance => true,
                 Phase::Shift => self.goes_on_while_recruiting(),
-                _ => false,
+                Phase::Idle
+                | Phase::LeaderElection
+                | Phase::RecruitElection
+                | Phase::PathAgreement
+                | Phase::Ended => false,
             },
-            _ => false,
+            Duty::Standby(_)
+            | Duty::Relay(_)
+            | Duty::Junction(_)
+            | Duty::Leaf(_)
+            | Duty::Bound(_)
+            | Duty::Waiting(_)
+            | Duty::AwaitingRelease(_) => false,
         }
     }
 

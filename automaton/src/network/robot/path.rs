@@ -180,9 +180,7 @@ impl Robot {
 
     /// The place that this robot goes to along Σ.
     pub(super) fn next_hop(&self) -> Option<&Hop> {
-        match *self.duty {
-            Duty::Shifting(Shifting { place, .. }) => self.mission.path()?.hops.get(place + 1),
-            _ => None,
-        }
+        let Duty::Shifting(Shifting { place, .. }) = *self.duty else { return None };
+        self.mission.path()?.hops.get(place + 1)
     }
 }
