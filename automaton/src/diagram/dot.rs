@@ -8,7 +8,8 @@ use crate::automaton::Automaton;
 use crate::outline::Source;
 
 /// The automaton in the DOT language. Transitions that only may be taken are dashed, and those
-/// that happen at once are bold. A superstate is a cluster, from whose border its transitions lead.
+/// that happen at once are bold. A superstate is a cluster, from whose border its transitions
+/// lead; of one that ends inside, the label names the superstate.
 pub fn dot<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     graph(&Sketch::of(&automaton.outline()))
 }
@@ -27,19 +28,20 @@ fn graph(sketch: &Sketch) -> String {
     text.push_str(&format!("    initial -> l{};\n", sketch.initial));
     for arrow in &sketch.arrows {
         let link = &sketch.links[arrow.transitions[0]];
-        let (label, style) = (quoted(&link.lines()), style(link.urgency));
-        let (source, mut ends) = match arrow.source {
-            Source::Location(source) => (source, String::new()),
-            Source::Superstate(number) => {
-                (sketch.superstates[number].1[0], format!(", ltail=cluster{number}"))
+        let (mut lines, style) = (link.lines(), style(link.urgency));
+        let (source, target) = (link.source, arrow.target.unwrap_or(link.source));
+        let mut tail = String::new();
+        if let Source::Superstate(number) = arrow.source {
+            let (name, members) = &sketch.superstates[number];
+            // Graphviz draws no edge from the border of a cluster to its inside.
+            match members.contains(&target) {
+                true => lines[0] = format!("{name}: {}", lines[0]),
+                false => tail = format!(", ltail=cluster{number}"),
             }
-        };
-        let target = arrow.target.unwrap_or(source);
-        if let (Source::Superstate(number), None) = (arrow.source, arrow.target) {
-            ends = format!(", ltail=cluster{number}, lhead=cluster{number}");
         }
+        let label = quoted(&lines);
         text.push_str(&format!(
-            "    l{source} -> l{target} [label={label}, style={style}{ends}];\n"
+            "    l{source} -> l{target} [label={label}, style={style}{tail}];\n"
         ));
     }
     text.push_str("}\n");
