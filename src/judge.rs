@@ -132,12 +132,12 @@ pub(crate) struct Order {
 
 impl Order {
     /// That of a trace of which nothing is read.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Order { now: Instant { step: 0, time: 0.0 }, events: Vec::new(), has_ended: false }
     }
 
     /// Takes the next entry: what is told with it, and the fault if it stands where it does not belong.
-    pub fn next(&mut self, entry: TraceEntry) -> (Option<Told>, Option<Violation>) {
+    pub(super) fn next(&mut self, entry: TraceEntry) -> (Option<Told>, Option<Violation>) {
         let after_end = self.has_ended.then(|| "the trace goes on after its end".to_owned());
         let before = self.now;
         let (told, misplaced) = match entry {

@@ -110,7 +110,7 @@ const RINGS: usize = 7;
 pub(crate) struct Dice(u64);
 
 impl Dice {
-    pub fn new(seed: u64, draft: u64) -> Self {
+    pub(super) fn new(seed: u64, draft: u64) -> Self {
         let mut dice = Self(seed);
         dice.0 = dice.next() ^ draft;
         dice
@@ -130,7 +130,7 @@ impl Dice {
     }
 
     /// An index below `count`.
-    pub fn below(&mut self, count: usize) -> usize {
+    pub(super) fn below(&mut self, count: usize) -> usize {
         ((self.unit() * count as f64) as usize).min(count - 1)
     }
 

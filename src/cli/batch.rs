@@ -12,7 +12,7 @@ use std::thread;
 
 /// Carries out `mission` for each run, in up to `jobs` threads, and gives the records in the order
 /// of the runs. After an interruption no further run begins.
-pub fn run(
+pub(super) fn run(
     runs: &[Planned],
     jobs: usize,
     quiet: bool,

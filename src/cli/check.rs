@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Checks scenarios one after another, and draws their starts.
-pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
+pub(super) fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
     let mut worst = Status::Done;
     let (sources, mut mistakes) = Source::all(&arguments.scenarios)?;
     let count = count_runs(sources.len(), &arguments.set, 1)?;

@@ -9,7 +9,7 @@ use pleach::discrete::{Event, Location};
 use pleach::guards::Valuation;
 
 /// Prints the drawing of an automaton.
-pub fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
+pub(super) fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
     let automata = Automata::new().map_err(|error| Failure::Internal(error.to_string()))?;
     let format = arguments.format;
     let drawing = match arguments.automaton {

@@ -8,7 +8,7 @@ use pleach::trace::TraceReader;
 use std::path::Path;
 
 /// Turns a trace into a recording.
-pub fn export(trace: &Path, recording: &Path) -> Result<Status, Failure> {
+pub(super) fn export(trace: &Path, recording: &Path) -> Result<Status, Failure> {
     let failed = |source: RecordingError| Failure::Recording { path: trace.into(), source };
     output::check_places([&trace.to_owned()], [&recording.to_owned()])?;
     let input = source::open(trace)

@@ -11,7 +11,7 @@ use pleach::task_list;
 use std::path::Path;
 
 /// Reads a map and writes a scenario.
-pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
+pub(super) fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
     output::check_places(
         &import::files(&arguments.map)?,
         arguments.output.iter().chain(&arguments.look),

@@ -10,7 +10,7 @@ use pleach::trace::TraceReader;
 use pleach::verify::network::judged_faults;
 
 /// Judges a trace and says what is wrong with it.
-pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
+pub(super) fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
     let path = &arguments.trace;
     let failure = |what: String| Failure::Judge(format!("{}: {what}", path.display()));
     let unreadable = |what: String| failure(format!("{what}; nothing was judged"));

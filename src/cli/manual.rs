@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use std::path::Path;
 
 /// Prints the completions for a shell.
-pub fn print_completions(shell: Shell) -> Result<Status, Failure> {
+pub(super) fn print_completions(shell: Shell) -> Result<Status, Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "pleach", &mut script);
     output::say(&String::from_utf8_lossy(&script))?;
@@ -16,7 +16,7 @@ pub fn print_completions(shell: Shell) -> Result<Status, Failure> {
 }
 
 /// Prints the manual page of the program, or writes those of all commands into a folder.
-pub fn write_manual(folder: Option<&Path>) -> Result<Status, Failure> {
+pub(super) fn write_manual(folder: Option<&Path>) -> Result<Status, Failure> {
     match folder {
         None => {
             let mut page = Vec::new();

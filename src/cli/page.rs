@@ -8,7 +8,7 @@ use pleach::page::{self, PageError};
 use std::path::{Path, PathBuf};
 
 /// Makes the page of a trace.
-pub fn write(arguments: &PageArguments) -> Result<Status, Failure> {
+pub(super) fn write(arguments: &PageArguments) -> Result<Status, Failure> {
     let path = &arguments.trace;
     let place = arguments.output.clone().unwrap_or_else(|| beside(path));
     output::check_places([path], [&place])?;

@@ -52,7 +52,7 @@ pub struct ReachArguments {
 }
 
 /// Reads a model, encloses its runs, and says what it found.
-pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
+pub(super) fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
     let inputs = [&arguments.model, &arguments.cfg];
     output::check_places(inputs, arguments.svg.iter().chain(&arguments.json))?;
     let read = |path: &Path| {

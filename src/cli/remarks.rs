@@ -6,7 +6,7 @@ use pleach::automaton::network::scenario::Remark;
 const REPAIRS_TOLD: usize = 8;
 
 /// The remarks as lines.
-pub fn lines<'r>(remarks: impl IntoIterator<Item = &'r Remark>) -> Vec<String> {
+pub(super) fn lines<'r>(remarks: impl IntoIterator<Item = &'r Remark>) -> Vec<String> {
     let (outline, others): (Vec<&Remark>, Vec<&Remark>) =
         remarks.into_iter().partition(|remark| matches!(remark, Remark::Outline(_)));
     let line = |remark: &&Remark| format!("{}: {remark}", remark.key());

@@ -7,7 +7,7 @@ use pleach::figures::quantity;
 const HEADER: [&str; 7] = ["run", "scenario", "outcome", "tasks", "periods", "recruits", "load"];
 
 /// The table, each line cut to the width of the terminal.
-pub fn draw(records: &[Record], width: Option<usize>) -> String {
+pub(super) fn draw(records: &[Record], width: Option<usize>) -> String {
     let keys = records.first().map_or(&[][..], |first| &first.set);
     let mut header: Vec<String> = vec![HEADER[0].into(), HEADER[1].into()];
     header.extend(keys.iter().map(|(key, _)| last_name(key)));
@@ -28,7 +28,7 @@ pub fn draw(records: &[Record], width: Option<usize>) -> String {
 }
 
 /// One line about a run that has just ended.
-pub fn line(record: &Record) -> String {
+pub(super) fn line(record: &Record) -> String {
     let set = record.set.iter().map(|(key, value)| format!(" {key}={}", readable(value)));
     let set: String = set.collect();
     let seed = record.seed.map_or_else(String::new, |seed| format!(" seed {seed}"));
@@ -58,7 +58,7 @@ fn cells(record: &Record) -> Vec<String> {
 }
 
 /// Why missions ended with tasks unserviced, each reason once, after the runs that it is true of.
-pub fn reasons(records: &[Record]) -> String {
+pub(super) fn reasons(records: &[Record]) -> String {
     let mut known: Vec<(&str, Vec<usize>)> = Vec::new();
     for record in records.iter().filter(|record| !record.reason.is_empty()) {
         match known.iter_mut().find(|(reason, _)| *reason == record.reason) {

@@ -32,7 +32,7 @@ pub(super) struct Film {
 
 impl Film {
     /// Takes the next instant.
-    pub fn push(&mut self, snapshot: &Snapshot) {
+    pub(super) fn push(&mut self, snapshot: &Snapshot) {
         self.stride = self.stride.max(1);
         if self.seen.is_multiple_of(self.stride) {
             self.frames.push(snapshot.clone());
@@ -45,7 +45,7 @@ impl Film {
     }
 
     /// The animation of what was taken, and of the `last` instant.
-    pub fn render(&self, plan: &Plan, last: Option<&Snapshot>) -> String {
+    pub(super) fn render(&self, plan: &Plan, last: Option<&Snapshot>) -> String {
         let mut frames: Vec<&Snapshot> = self.frames.iter().collect();
         frames.extend(last.filter(|last| frames.last().is_none_or(|f| f.step < last.step)));
         let room = [WIDTH - 2.0 * MARGIN, WIDTH];

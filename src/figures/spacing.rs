@@ -12,14 +12,14 @@ pub(crate) struct Walls {
 
 impl Walls {
     /// The walls of a workspace.
-    pub fn new(workspace: &WorkspaceOutline) -> Walls {
+    pub(crate) fn new(workspace: &WorkspaceOutline) -> Walls {
         let loops = std::iter::once(&workspace.boundary).chain(&workspace.holes);
         Walls { sides: loops.flat_map(|corners| sides(corners)).collect() }
     }
 
     /// The smallest distance of two of the points, and of a point to a wall; infinite where there
     /// is none.
-    pub fn distances(&self, points: &[[f64; 2]]) -> [f64; 2] {
+    pub(crate) fn distances(&self, points: &[[f64; 2]]) -> [f64; 2] {
         [smallest_pair_distance(points), smallest_clearance(points, &self.sides)]
     }
 }

@@ -6,14 +6,14 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::i_float::int::point::IntPoint;
 
 /// The side of a cell in the unit of outlines: corners are cut off where two free cells touch at one of them only.
-pub const SIDE: i64 = 8;
+pub(super) const SIDE: i64 = 8;
 
 /// The corners of an outline, the floor to the left of each side; in eighths of a cell.
-pub type Corners = Vec<[i64; 2]>;
+pub(super) type Corners = Vec<[i64; 2]>;
 
 /// Cells in rows from the bottom, each free or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Cells {
+pub(super) struct Cells {
     /// Cells in a row.
     pub width: usize,
     /// Rows.
@@ -24,7 +24,7 @@ pub struct Cells {
 
 /// Groups of cells that were not free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Specks {
+pub(super) struct Specks {
     /// How many groups.
     pub groups: usize,
     /// The cells of all.
@@ -33,12 +33,12 @@ pub struct Specks {
 
 impl Cells {
     /// The number of free cells.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.free.iter().filter(|&&free| free).count()
     }
 
     /// Frees groups of at most `largest` cells with nothing but free cells around them.
-    pub fn drop_specks(&mut self, largest: usize) -> Specks {
+    pub(super) fn drop_specks(&mut self, largest: usize) -> Specks {
         let mut dropped = Specks::default();
         let mut is_seen = vec![false; self.free.len()];
         for start in 0..self.free.len() {
@@ -68,7 +68,7 @@ impl Cells {
 
     /// Keeps the piece with the most cells, which are connected side by side; the number of cells
     /// that are taken out. Of equal pieces the lowest one stays.
-    pub fn keep_largest_piece(&mut self) -> usize {
+    pub(super) fn keep_largest_piece(&mut self) -> usize {
         let mut piece_of = vec![usize::MAX; self.free.len()];
         let mut sizes = Vec::new();
         for start in 0..self.free.len() {
@@ -115,7 +115,7 @@ impl Cells {
     /// The outline of the free cells, which must be one piece: the boundary, then the holes. None where no cell is
     /// free. Where two free cells touch at a corner only, an eighth of the sides there is cut off, so that outlines do
     /// not touch.
-    pub fn outline(&self) -> Option<Vec<Corners>> {
+    pub(super) fn outline(&self) -> Option<Vec<Corners>> {
         let mut union = Overlay::<i32>::from_subj_and_clip(&self.rows(), &self.pinches());
         let shapes = union.overlay(OverlayRule::Difference, FillRule::NonZero);
         let corners = |ring: Vec<IntPoint<i32>>| {
@@ -167,7 +167,7 @@ pub(super) mod tests {
     use super::*;
 
     /// A map drawn with `.` for free cells.
-    pub fn cells(rows_from_top: &[&str]) -> Cells {
+    pub(crate) fn cells(rows_from_top: &[&str]) -> Cells {
         let rows = rows_from_top.iter().rev();
         let free = rows.flat_map(|row| row.chars().map(|c| c == '.')).collect();
         Cells { width: rows_from_top[0].len(), height: rows_from_top.len(), free }

@@ -51,7 +51,7 @@ pub(super) enum Role {
 
 impl Role {
     /// Features in this role, in words.
-    pub const fn plural(self) -> &'static str {
+    pub(super) const fn plural(self) -> &'static str {
         match self {
             Self::Floor => "floor",
             Self::Room => "rooms",
@@ -87,7 +87,10 @@ impl Role {
 
 impl Feature {
     /// The property that decides on the role, and the role if it names one.
-    pub fn role<'a>(&'a self, reading: &'a Reading) -> (Option<(&'a str, &'a str)>, Option<Role>) {
+    pub(super) fn role<'a>(
+        &'a self,
+        reading: &'a Reading,
+    ) -> (Option<(&'a str, &'a str)>, Option<Role>) {
         for (chosen, role) in [(&reading.walls, Role::Wall), (&reading.floors, Role::Floor)] {
             let stated = chosen.iter().find(|(key, value)| self.properties.get(key) == Some(value));
             if let Some((key, value)) = stated {
@@ -109,7 +112,7 @@ impl Feature {
     }
 
     /// The width that it states, in metres.
-    pub fn width(&self) -> Option<f64> {
+    pub(super) fn width(&self) -> Option<f64> {
         let width = self.properties.get("width")?.trim_end_matches('m').trim().parse().ok()?;
         (width > 0.0 && width < f64::INFINITY).then_some(width)
     }

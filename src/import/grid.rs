@@ -36,7 +36,7 @@ pub(super) struct Grid {
 
 impl Grid {
     /// A grid of cells of side 1 at the origin; `free` has rows from the top.
-    pub fn new(width: usize, height: usize, free: Vec<bool>) -> Result<Self, String> {
+    pub(super) fn new(width: usize, height: usize, free: Vec<bool>) -> Result<Self, String> {
         match width.checked_mul(height) {
             Some(count) if count <= MOST_CELLS && count == free.len() && count > 0 => {
                 let shades = free.iter().map(|&free| if free { u8::MAX } else { 0 }).collect();
@@ -52,7 +52,7 @@ impl Grid {
     }
 
     /// Traces the outline of the largest piece of floor.
-    pub fn trace(self, reading: &Reading) -> Result<Plan, String> {
+    pub(super) fn trace(self, reading: &Reading) -> Result<Plan, String> {
         let cell = self.cell * reading.scale;
         let tolerance = match reading.tolerance {
             None => cell,

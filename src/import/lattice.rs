@@ -17,7 +17,7 @@ const STEP: i64 = SIDE / 2;
 const SPACING: f64 = 0.5 * std::f64::consts::SQRT_2 * STEP as f64;
 
 /// Points at which a robot fits.
-pub struct Lattice {
+pub(super) struct Lattice {
     width: usize,
     height: usize,
     is_open: Vec<bool>,
@@ -27,7 +27,7 @@ pub struct Lattice {
 
 impl Lattice {
     /// The lattice for robots that keep `clearance` from walls, in the unit of outlines.
-    pub fn of(cells: &Cells, clearance: f64) -> Self {
+    pub(super) fn of(cells: &Cells, clearance: f64) -> Self {
         let [width, height] = [cells.width, cells.height].map(|side| 2 * side + 1);
         let distances = squared_distances(cells, width, height);
         let least = ((clearance - SPACING) / STEP as f64).max(0.0).powi(2);
@@ -37,7 +37,7 @@ impl Lattice {
 
     /// Takes the points that are in a triangle or nearer to its first side than robots keep, if what stays hangs together
     /// as before; otherwise takes none. Whether it took them.
-    pub fn take(&mut self, triangle: [[i64; 2]; 3]) -> bool {
+    pub(super) fn take(&mut self, triangle: [[i64; 2]; 3]) -> bool {
         let mut doomed = self.near(triangle);
         let all = doomed.clone();
         loop {

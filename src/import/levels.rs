@@ -13,7 +13,7 @@ const MOST: i32 = 1000;
 pub(super) struct Levels(Vec<String>);
 
 impl Levels {
-    pub fn of(features: &[Feature]) -> Self {
+    pub(super) fn of(features: &[Feature]) -> Self {
         let levels: BTreeSet<String> = features.iter().filter_map(stated).flatten().collect();
         let mut levels: Vec<String> = levels.into_iter().collect();
         let number = |level: &String| level.parse().unwrap_or(f64::INFINITY);
@@ -22,7 +22,7 @@ impl Levels {
     }
 
     /// The features of a level, and of none in particular; of several levels one must be chosen.
-    pub fn choose(
+    pub(super) fn choose(
         self,
         features: Vec<Feature>,
         chosen: Option<&str>,

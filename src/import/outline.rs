@@ -14,7 +14,7 @@ const FARTHEST: f64 = 1e100;
 pub(super) const DIGITS: i32 = 6;
 
 /// The corners of a polygon, not closed twice.
-pub type Ring = Vec<[f64; 2]>;
+pub(super) type Ring = Vec<[f64; 2]>;
 
 /// A ring with all lengths multiplied.
 pub(super) fn scaled(ring: Ring, scale: f64) -> Ring {
@@ -63,7 +63,7 @@ type Shapes = Vec<Vec<Vec<IntPoint<i64>>>>;
 
 impl Sketch {
     /// All lines as they are drawn.
-    pub fn drawn(&self) -> Vec<Ring> {
+    pub(super) fn drawn(&self) -> Vec<Ring> {
         let closed = |ring: &Ring| ring.iter().chain(ring.first()).copied().collect::<Ring>();
         let polygons = [&self.floors, &self.walls, &self.doors].into_iter().flatten().map(closed);
         let line = |line: &Stroke| {
@@ -76,7 +76,7 @@ impl Sketch {
     ///
     /// All is rounded before it is put together, and the result has no further rounding: what is found not to cross
     /// stays so.
-    pub fn floor(&self) -> Result<(WorkspaceOutline, Account), String> {
+    pub(super) fn floor(&self) -> Result<(WorkspaceOutline, Account), String> {
         let lines = self.lines.iter().flat_map(Stroke::outline).collect();
         let all = [&self.floors, &self.walls, &lines, &self.doors];
         let raster = Raster::of(all.into_iter().flatten())?;

@@ -15,7 +15,7 @@ pub(super) struct Places(Vec<Point>);
 
 impl Places {
     /// Places on the whole floor.
-    pub fn on(workspace: &Workspace) -> Self {
+    pub(super) fn on(workspace: &Workspace) -> Self {
         let corners = workspace.polygons().iter().flatten();
         let low = corners.copied().reduce(|low, corner| low.inf(&corner)).unwrap_or_default();
         let step = workspace.extent() / LATTICE as f64;
@@ -27,12 +27,12 @@ impl Places {
     }
 
     /// Those where a robot can be.
-    pub fn within(&self, free_space: &FreeSpace) -> Self {
+    pub(super) fn within(&self, free_space: &FreeSpace) -> Self {
         Self(self.0.iter().copied().filter(|&place| free_space.contains(place)).collect())
     }
 
     /// The place farthest from walls.
-    pub fn widest(&self, workspace: &Workspace) -> Option<[f64; 2]> {
+    pub(super) fn widest(&self, workspace: &Workspace) -> Option<[f64; 2]> {
         let clearance = |place: &Point| workspace.clearance(*place);
         let widest = self.0.iter().max_by(|a, b| clearance(a).total_cmp(&clearance(b)))?;
         Some(rounded((*widest).into(), workspace.extent()))
@@ -40,7 +40,7 @@ impl Places {
 
     /// Different places far from the access points and from each other, one after another; fewer than asked for if
     /// there are no more.
-    pub fn far_apart(&self, site: &Site, count: usize) -> Vec<[f64; 2]> {
+    pub(super) fn far_apart(&self, site: &Site, count: usize) -> Vec<[f64; 2]> {
         let mut chosen = site.access_points.clone();
         let nearest = |place: Point, chosen: &[Point]| {
             chosen.iter().map(|&other| site.distance(other, place)).fold(f64::INFINITY, f64::min)
@@ -64,7 +64,7 @@ impl Places {
     }
 
     /// The share of the places that robots come near to from one of these, 0 to 1.
-    pub fn reached(&self, free_space: &FreeSpace, from: &[Point]) -> f64 {
+    pub(super) fn reached(&self, free_space: &FreeSpace, from: &[Point]) -> f64 {
         let region = |place: Point| free_space.region(free_space.nearest(place));
         let pieces: Vec<_> = from.iter().filter_map(|&place| region(place)).collect();
         let reached = self.0.iter().filter(|&&place| {
@@ -76,7 +76,7 @@ impl Places {
     }
 
     /// The largest clearance below `too_large`, to two digits, with which robots reach a share of the places.
-    pub fn clearance_that_fits(
+    pub(super) fn clearance_that_fits(
         &self,
         workspace: &Workspace,
         from: &[Point],

@@ -19,7 +19,7 @@ pub(super) enum Projection {
 
 impl Projection {
     /// Coordinates are degrees unless it is said that they are lengths, or they cannot be degrees of a floor.
-    pub fn of(features: &[Feature], reading: &Reading) -> Self {
+    pub(super) fn of(features: &[Feature], reading: &Reading) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for place in features.iter().flat_map(places) {
             low = [0, 1].map(|axis| low[axis].min(place[axis]));
@@ -36,7 +36,7 @@ impl Projection {
     }
 
     /// The features with their places as lengths of the result, and what is to be said about it.
-    pub fn apply(
+    pub(super) fn apply(
         &self,
         features: Vec<Feature>,
         reading: &Reading,

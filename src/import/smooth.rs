@@ -18,7 +18,7 @@ const APART: f64 = 0.25;
 
 /// What may be lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub(super) struct Limits {
     /// How far the outline may deviate, in eighths of a cell.
     pub tolerance: f64,
     /// How much area may be lost, in squares of eighths of a cell.
@@ -26,7 +26,7 @@ pub struct Limits {
 }
 
 /// An outline, the boundary before the holes, with as few corners as the limits allow.
-pub fn smooth(outline: &[Corners], limits: Limits, lattice: &mut Lattice) -> Vec<Corners> {
+pub(super) fn smooth(outline: &[Corners], limits: Limits, lattice: &mut Lattice) -> Vec<Corners> {
     let mut drawing = Drawing::of(outline);
     let mut waiting: BinaryHeap<Reverse<Candidate>> = (0..drawing.corners.len())
         .filter_map(|corner| drawing.candidate(corner))
@@ -174,7 +174,7 @@ fn cross([a, b, c]: [[i64; 2]; 3]) -> i64 {
 }
 
 /// Twice the area of an outline.
-pub fn double_area(outline: &[Corners]) -> i64 {
+pub(super) fn double_area(outline: &[Corners]) -> i64 {
     let sides = outline.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
     sides.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum()
 }

@@ -21,7 +21,7 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    pub fn of(plan: &Plan, choices: &Choices, extent: f64) -> Result<Self, SkeletonError> {
+    pub(super) fn of(plan: &Plan, choices: &Choices, extent: f64) -> Result<Self, SkeletonError> {
         let MapPlaces { access_points, robots, tasks, named } = &plan.places;
         let place = |spot: &Spot| match (plan.place(spot), spot) {
             (Some(place), _) => Ok(rounded(place, extent)),

@@ -25,7 +25,7 @@ pub(super) struct Door {
 
 impl Stroke {
     /// A wall along a line, which is closed if it ends where it starts.
-    pub fn along(mut corners: Ring, width: f64) -> Self {
+    pub(super) fn along(mut corners: Ring, width: f64) -> Self {
         let is_closed =
             corners.len() > 3 && corners.first() == corners.last() && double_area(&corners) != 0.0;
         if is_closed {
@@ -35,13 +35,13 @@ impl Stroke {
     }
 
     /// The polygons that the wall covers.
-    pub fn outline(&self) -> Vec<Ring> {
+    pub(super) fn outline(&self) -> Vec<Ring> {
         let style = StrokeStyle::new(self.width).line_join(LineJoin::Miter(SHARPEST));
         self.corners.stroke_as::<i64>(style, self.is_closed).concat()
     }
 
     /// What stays of the wall beside its doors: those that stand on it.
-    pub fn beside(&self, doors: &[Door]) -> Vec<Stroke> {
+    pub(super) fn beside(&self, doors: &[Door]) -> Vec<Stroke> {
         let mut pieces: Vec<Ring> = Vec::new();
         let mut is_cut = false;
         for (from, to) in self.sides() {

@@ -19,12 +19,12 @@ pub(super) struct Choices {
 
 impl Choices {
     /// A table without columns.
-    pub fn new() -> Choices {
+    pub(super) fn new() -> Choices {
         Choices { values: Vec::new(), table: Table::new(0), numbers: BTreeMap::new() }
     }
 
     /// Adds a step.
-    pub fn push(&mut self, row: impl IntoIterator<Item = Value>) {
+    pub(super) fn push(&mut self, row: impl IntoIterator<Item = Value>) {
         let row: Vec<f64> = row.into_iter().map(|value| self.number(value) as f64).collect();
         self.table.push(row);
     }

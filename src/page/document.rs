@@ -57,13 +57,13 @@ pub(super) struct Row {
 
 impl Row {
     /// A row that speaks of the whole run.
-    pub fn new(name: impl Into<String>, text: String) -> Row {
+    pub(super) fn new(name: impl Into<String>, text: String) -> Row {
         Row { name: name.into(), text, at: None }
     }
 
     /// A row that speaks of control period `step`.
     #[cfg(feature = "network")]
-    pub fn at(name: impl Into<String>, text: String, step: usize) -> Row {
+    pub(super) fn at(name: impl Into<String>, text: String, step: usize) -> Row {
         Row { name: name.into(), text, at: Some(step) }
     }
 
@@ -78,7 +78,7 @@ impl Row {
 
 impl Document<'_> {
     /// The file.
-    pub fn render(&self) -> String {
+    pub(super) fn render(&self) -> String {
         let rows: Vec<String> = self.summary.iter().map(Row::render).collect();
         let style = format!("{}\n{STYLE}", colours::style_sheet());
         let parts = [

@@ -56,7 +56,7 @@ struct Links {
 
 impl Steps {
     /// No steps; lengths keep `decimals`.
-    pub fn new(decimals: i32) -> Steps {
+    pub(super) fn new(decimals: i32) -> Steps {
         let measured = MEASURED.map(|(name, fixed)| (name, Table::new(fixed.unwrap_or(decimals))));
         Steps {
             count: 0,
@@ -73,12 +73,12 @@ impl Steps {
     }
 
     /// How many there are.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.count
     }
 
     /// Adds the line of a trace for a step, and `more` fields that only the page has.
-    pub fn push(
+    pub(super) fn push(
         &mut self,
         line: Map<String, Value>,
         more: impl IntoIterator<Item = (String, Value)>,

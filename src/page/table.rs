@@ -34,13 +34,13 @@ struct Column {
 
 impl Table {
     /// A table without columns.
-    pub fn new(decimals: i32) -> Table {
+    pub(super) fn new(decimals: i32) -> Table {
         Table { decimals, columns: Vec::new(), steps: 0 }
     }
 
     /// Adds a step. Where the row is longer than those before it, its new columns were 0; where
     /// it is shorter, the columns that it lacks keep their numbers.
-    pub fn push(&mut self, row: impl IntoIterator<Item = f64>) {
+    pub(super) fn push(&mut self, row: impl IntoIterator<Item = f64>) {
         let scale = 10f64.powi(self.decimals);
         let mut filled = 0;
         for (at, value) in row.into_iter().enumerate() {

@@ -20,12 +20,12 @@ pub(super) struct Stamp {
 }
 
 impl Stamp {
-    pub fn of(time: f64) -> Self {
+    pub(super) fn of(time: f64) -> Self {
         let time = time.max(0.0);
         Self { sec: time as u32, nsec: (time.fract() * 1e9) as u32 }
     }
 
-    pub fn nanoseconds(self) -> u64 {
+    pub(super) fn nanoseconds(self) -> u64 {
         u64::from(self.sec) * 1_000_000_000 + u64::from(self.nsec)
     }
 }
@@ -206,12 +206,12 @@ pub(super) struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    pub fn of(scenario: &'a Scenario, snapshot: &'a Snapshot) -> Self {
+    pub(super) fn of(scenario: &'a Scenario, snapshot: &'a Snapshot) -> Self {
         Self { scenario, snapshot, clearance: Settings::resolve(scenario).clearance }
     }
 
     /// Robots, tree and links.
-    pub fn scene(&self) -> Scene {
+    pub(super) fn scene(&self) -> Scene {
         let mut network = entity("network", self.snapshot.time);
         for (robot, place) in self.snapshot.positions.iter().enumerate() {
             let place = [place.x, place.y];

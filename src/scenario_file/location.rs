@@ -43,20 +43,20 @@ pub(super) struct Lines<'t> {
 }
 
 impl<'t> Lines<'t> {
-    pub fn of(text: &'t str) -> Self {
+    pub(super) fn of(text: &'t str) -> Self {
         let after_breaks = text.match_indices('\n').map(|(newline, _)| newline + 1);
         Self { text, starts: std::iter::once(0).chain(after_breaks).collect() }
     }
 
     /// The line that holds byte `start`, without blanks at its ends.
-    pub fn around(&self, start: usize) -> &'t str {
+    pub(super) fn around(&self, start: usize) -> &'t str {
         let line = self.line_of(start);
         let end = self.starts.get(line + 1).map_or(self.text.len(), |&next| next);
         self.text[self.starts[line]..end].trim()
     }
 
     /// Line and column of byte `start`.
-    pub fn place(&self, start: usize) -> MistakePlace {
+    pub(super) fn place(&self, start: usize) -> MistakePlace {
         let line = self.line_of(start);
         let before = &self.text[self.starts[line]..self.text.floor_char_boundary(start)];
         MistakePlace::Text { line: line + 1, column: before.chars().count() + 1 }

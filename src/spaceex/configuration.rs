@@ -60,7 +60,7 @@ fn to_closing_quote<'t>(
 }
 
 impl Options {
-    pub fn read(text: &str) -> Result<Self, SpaceExError> {
+    pub(super) fn read(text: &str) -> Result<Self, SpaceExError> {
         let mut options = Options::default();
         let mut known: Vec<(String, usize)> = Vec::new();
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -158,7 +158,7 @@ impl Options {
     }
 
     /// The same, in names of the whole network in place of those of its inner components.
-    pub fn in_names_of(mut self, network: &Network<'_>) -> Self {
+    pub(super) fn in_names_of(mut self, network: &Network<'_>) -> Self {
         let clauses = [&mut self.initially.1, &mut self.forbidden.1].into_iter().flatten();
         let directions = self.directions.iter_mut().filter_map(|(_, bounded)| match bounded {
             Bounded::Across(clauses) => Some(clauses),

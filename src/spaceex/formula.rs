@@ -40,7 +40,7 @@ pub(super) enum Side {
 
 impl Side {
     /// The name, if it is a variable and nothing else.
-    pub fn name(&self) -> Option<&str> {
+    pub(super) fn name(&self) -> Option<&str> {
         match self {
             Side::Formula(Expression::Variable(name)) => Some(name),
             Side::Formula(_) | Side::Primed(_) => None,
@@ -238,7 +238,7 @@ fn side(text: &str) -> Result<Side, String> {
 
 impl Relation {
     /// The same between the sides in the other order.
-    pub fn turned(self) -> Self {
+    pub(super) fn turned(self) -> Self {
         match self {
             Relation::AtMost => Relation::AtLeast,
             Relation::LessThan => Relation::MoreThan,
@@ -249,7 +249,7 @@ impl Relation {
     }
 
     /// As a predicate; equality as two comparisons.
-    pub fn predicate(self, left: &Expression, right: &Expression) -> Predicate {
+    pub(super) fn predicate(self, left: &Expression, right: &Expression) -> Predicate {
         match self {
             Relation::AtMost => left.at_most(right),
             Relation::LessThan => left.less_than(right),

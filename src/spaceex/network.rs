@@ -56,7 +56,10 @@ const DEPTH: usize = 32;
 
 impl<'a> Network<'a> {
     /// The instances in `system`.
-    pub fn of(components: &'a [Component], system: &'a Component) -> Result<Self, SpaceExError> {
+    pub(super) fn of(
+        components: &'a [Component],
+        system: &'a Component,
+    ) -> Result<Self, SpaceExError> {
         let mut network = Network {
             instances: Vec::new(),
             known: BTreeMap::new(),
@@ -177,14 +180,14 @@ impl<'a> Network<'a> {
 
 impl Network<'_> {
     /// Names of the whole in the place of those of inner components.
-    pub fn in_names_of_the_whole(&self, formula: &Expression) -> Expression {
+    pub(super) fn in_names_of_the_whole(&self, formula: &Expression) -> Expression {
         formula.substitute(&substitution(&self.inner))
     }
 }
 
 impl Instance<'_> {
     /// The name of a parameter in the whole.
-    pub fn global(&self, name: &str) -> Option<&str> {
+    pub(super) fn global(&self, name: &str) -> Option<&str> {
         match self.names.get(name)? {
             Bound::Name(global) => Some(global),
             Bound::Number(_) | Bound::Formula(_) => None,
@@ -197,7 +200,7 @@ impl Instance<'_> {
     }
 
     /// A conjunction of the component, in names of the whole.
-    pub fn clauses(&self, text: &Text) -> Result<Vec<Clause>, SpaceExError> {
+    pub(super) fn clauses(&self, text: &Text) -> Result<Vec<Clause>, SpaceExError> {
         let wrong = |problem: String| SpaceExError::Model { line: text.line, problem };
         let substitution = self.substitution();
         let side = |side: Side| -> Result<Side, SpaceExError> {
@@ -247,7 +250,7 @@ impl Instance<'_> {
     }
 
     /// The rates that a location gives: `None` where no time passes.
-    pub fn rates(
+    pub(super) fn rates(
         &self,
         place: &Location,
     ) -> Result<Option<Vec<(String, Expression)>>, SpaceExError> {
@@ -283,7 +286,7 @@ impl Instance<'_> {
     }
 
     /// What a transition assigns: a formula, or bounds on what the value may be.
-    pub fn assignments(
+    pub(super) fn assignments(
         &self,
         transition: &Transition,
     ) -> Result<Vec<(String, Assigned)>, SpaceExError> {

@@ -18,7 +18,7 @@ pub(crate) struct Connection {
 
 impl Connection {
     /// What is read and, where it differs, as what.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         match (self.coordinate, self.read_as) {
             (coordinate, read_as) if coordinate == read_as => coordinate.to_owned(),
             (coordinate, read_as) => format!("{coordinate} → {read_as}"),

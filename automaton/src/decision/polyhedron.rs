@@ -39,7 +39,7 @@ struct Vertex {
 
 impl<'a> Polyhedron<'a> {
     /// Where those of `comparisons` hold that are linear, with a range for each variable.
-    pub fn new(
+    pub(super) fn new(
         comparisons: &[Comparison],
         variables: &'a [&'a str],
         ranges: &'a [Interval],
@@ -52,7 +52,7 @@ impl<'a> Polyhedron<'a> {
     ///
     /// The point sought first is the one farthest from all faces, up to a distance of 1 in each
     /// coordinate. Where no point has any distance, only the strict faces must be avoided.
-    pub fn content(&self) -> Option<Content> {
+    pub(super) fn content(&self) -> Option<Content> {
         let widest = match self.widest(Inequality::extent)? {
             Ok(vertex) => vertex,
             Err(multipliers) => return self.refuted_by(&multipliers),

@@ -31,7 +31,7 @@ pub(super) enum Outcome {
 }
 
 impl LinearProgram {
-    pub fn solve(&self) -> Outcome {
+    pub(super) fn solve(&self) -> Outcome {
         let mut dictionary = Dictionary::new(&self.rows, self.objective.len());
         if !dictionary.make_feasible() {
             return Outcome::Infeasible { multipliers: dictionary.multipliers() };

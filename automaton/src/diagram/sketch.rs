@@ -59,7 +59,7 @@ pub(crate) struct Link {
 pub(super) const MISSED: &str = "never taken";
 
 impl Sketch {
-    pub fn of(automaton: &Outline<'_>) -> Sketch {
+    pub(crate) fn of(automaton: &Outline<'_>) -> Sketch {
         let mode = |mode: &outline::Mode<'_>| Mode {
             name: mode.name,
             flow: mode.flow.map_or_else(Vec::new, flow_formulas),
@@ -131,7 +131,7 @@ pub(crate) struct Contents {
 
 impl Mode {
     /// The name, then the flow, the invariant, and what is chosen at samples, if there are any.
-    pub fn lines(&self) -> Vec<String> {
+    pub(super) fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.name.to_owned()];
         lines.extend(self.flow.iter().cloned());
         lines.extend(self.invariant.iter().map(|invariant| format!("while {invariant}")));
@@ -160,7 +160,7 @@ impl Link {
 
     /// The event, the guard in brackets, the reset after a stroke if there is one, and the urgency
     /// with the priority.
-    pub fn lines(&self) -> Vec<String> {
+    pub(super) fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.event.clone(), format!("[{}]", self.guard)];
         if !self.reset.is_empty() {
             lines.push(format!("/ {}", self.reset.join(", ")));
@@ -172,7 +172,7 @@ impl Link {
 
     /// As [`lines`](Self::lines), but short: each assignment by itself, and only what is not as
     /// usual. The urgency is up to the stroke.
-    pub fn short_lines(&self) -> Vec<String> {
+    pub(super) fn short_lines(&self) -> Vec<String> {
         let mut lines = vec![match self.priority {
             0 => self.event.clone(),
             priority => format!("{} (priority {priority})", self.event),

@@ -73,7 +73,7 @@ pub(super) struct Sightings(Vec<Wreck>);
 
 impl Sightings {
     /// A robot was heard, or heard of.
-    pub fn note(&mut self, seen: Wreck) {
+    pub(super) fn note(&mut self, seen: Wreck) {
         match self.0.binary_search_by_key(&seen.robot, |known| known.robot) {
             Ok(at) if self.0[at].by_news(&seen).is_gt() => {}
             Ok(at) => self.0[at] = seen,
@@ -82,11 +82,11 @@ impl Sightings {
     }
 
     /// Only these are still of interest.
-    pub fn retain(&mut self, is_of_interest: impl FnMut(&Wreck) -> bool) {
+    pub(super) fn retain(&mut self, is_of_interest: impl FnMut(&Wreck) -> bool) {
         self.0.retain(is_of_interest);
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = Wreck> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = Wreck> {
         self.0.iter().copied()
     }
 }

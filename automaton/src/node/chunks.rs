@@ -60,7 +60,7 @@ impl<N: Node> Outcome<N> {
 
 impl<N: Node> Chunks<N> {
     /// These nodes, numbered from 0.
-    pub fn new(nodes: Vec<N>) -> Self {
+    pub(super) fn new(nodes: Vec<N>) -> Self {
         let mut slots = vec![Slot::default(); nodes.len()];
         slots.iter_mut().zip(&nodes).for_each(|(slot, node)| slot.ask(node));
         Chunks { nodes, slots, threads: threads(), outcomes: vec![Outcome::nothing()] }
@@ -71,7 +71,7 @@ impl<N: Node> Chunks<N> {
     /// # Errors
     ///
     /// That of the first node that cannot go on.
-    pub fn take(&mut self, steps: &Steps<'_, N::Message>) -> Result<(), N::Error> {
+    pub(super) fn take(&mut self, steps: &Steps<'_, N::Message>) -> Result<(), N::Error> {
         let is_short = self.threads == 1 || self.count(steps) < FEWEST_STEPS_FOR_THREADS;
         let (threads, chunks) =
             if is_short { (1, 1) } else { (self.threads, self.threads * CHUNKS_PER_THREAD) };
@@ -98,7 +98,7 @@ impl<N: Node> Chunks<N> {
     /// # Errors
     ///
     /// That of the first node whose invariant does not hold afterwards.
-    pub fn flow(&mut self, duration: f64) -> Result<(), N::Error> {
+    pub(super) fn flow(&mut self, duration: f64) -> Result<(), N::Error> {
         self.nodes.iter_mut().zip(&mut self.slots).try_for_each(|(node, slot)| {
             node.flow(duration);
             slot.ticked = 0;
@@ -120,7 +120,7 @@ impl<N: Node> Chunks<N> {
     /// # Errors
     ///
     /// That of the node.
-    pub fn sense(&mut self, id: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
+    pub(super) fn sense(&mut self, id: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
         let Chunks { nodes, slots, outcomes, .. } = self;
         let Some((node, slot)) = nodes.get_mut(id).zip(slots.get_mut(id)) else { return Ok(()) };
         slot.step(node, Input::Sensed(sensed), outcomes[0].outputs.now_of(id))?;
@@ -133,7 +133,7 @@ impl<N: Node> Chunks<N> {
     /// # Errors
     ///
     /// That of the node.
-    pub fn hear(
+    pub(super) fn hear(
         &mut self,
         delivery: Delivery<'_, N::Message>,
         number: usize,
@@ -148,12 +148,12 @@ impl<N: Node> Chunks<N> {
     }
 
     /// Gives the medium what the nodes have sent: answers in the order of what they answer, all else in that of the nodes.
-    pub fn send<B>(&mut self, medium: &mut impl Medium<N::Message, B>) {
+    pub(super) fn send<B>(&mut self, medium: &mut impl Medium<N::Message, B>) {
         self.outcomes.iter_mut().for_each(|outcome| medium.send_all(outcome.outputs.sent_mut()));
     }
 
     /// What the nodes have told observers since the last call, in its order.
-    pub fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, N::Report)> {
+    pub(super) fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, N::Report)> {
         self.outcomes[0].outputs.drain_reports()
     }
 }
@@ -257,7 +257,7 @@ impl Slot {
     }
 
     /// The node has changed: asks it when it ticks next.
-    pub fn ask<N: Node>(&mut self, node: &N) {
+    fn ask<N: Node>(&mut self, node: &N) {
         let is_due = node.time_to_tick().is_some_and(|wait| wait <= 0.0);
         self.ticks = is_due.then(|| self.ticked + 1 + node.rounds_to_pass());
     }

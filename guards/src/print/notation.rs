@@ -119,7 +119,7 @@ pub(super) static LATEX: Notation = Notation {
 };
 
 impl Notation {
-    pub fn table(&self, interpolation: Interpolation) -> &'static str {
+    pub(super) fn table(&self, interpolation: Interpolation) -> &'static str {
         let [linear, steps, flat] = self.tables;
         match interpolation {
             Interpolation::Linear => linear,
@@ -129,7 +129,7 @@ impl Notation {
     }
 
     /// The shortest decimal that reads back as `value`.
-    pub fn write_number(&self, out: &mut dyn Write, value: f64) -> fmt::Result {
+    pub(super) fn write_number(&self, out: &mut dyn Write, value: f64) -> fmt::Result {
         if value.is_sign_negative() {
             out.write_str(self.minus)?;
         }

@@ -67,23 +67,23 @@ fn name_and_attributes(
 
 impl Element {
     /// A problem with the place of the element.
-    pub fn wrong(&self, problem: &str) -> String {
+    pub(super) fn wrong(&self, problem: &str) -> String {
         format!("byte {}: {problem}", self.byte)
     }
 
-    pub fn attribute(&self, name: &str) -> Option<&str> {
+    pub(super) fn attribute(&self, name: &str) -> Option<&str> {
         self.attributes.get(name).map(String::as_str)
     }
 
     /// What its style, or else an attribute, says about a property.
-    pub fn property(&self, name: &str) -> Option<&str> {
+    pub(super) fn property(&self, name: &str) -> Option<&str> {
         let rules = self.attribute("style").unwrap_or_default().split(';');
         let mut rules = rules.filter_map(|rule| rule.split_once(':'));
         let styled = rules.find(|(property, _)| property.trim() == name).map(|(_, value)| value);
         styled.or(self.attribute(name)).map(str::trim)
     }
 
-    pub fn transform(&self) -> Result<Affine, String> {
+    pub(super) fn transform(&self) -> Result<Affine, String> {
         let Some(text) = self.property("transform") else { return Ok(Affine::IDENTITY) };
         let transform: svgtypes::Transform =
             text.parse().map_err(|error| format!("transform {text:?}: {error}"))?;
@@ -92,18 +92,18 @@ impl Element {
     }
 
     /// A point, 0 by default.
-    pub fn point(&self, [x, y]: [&str; 2]) -> Result<Point, String> {
+    pub(super) fn point(&self, [x, y]: [&str; 2]) -> Result<Point, String> {
         let [x, y] = [self.stated_number(x)?, self.stated_number(y)?];
         Ok(Point::new(x.unwrap_or_default(), y.unwrap_or_default()))
     }
 
     /// A length that must be stated.
-    pub fn length(&self, name: &str) -> Result<f64, String> {
+    pub(super) fn length(&self, name: &str) -> Result<f64, String> {
         self.stated_length(name)?.ok_or_else(|| format!("{} has no {name}", self.name))
     }
 
     /// A length, if it is stated and is not `auto`.
-    pub fn stated_length(&self, name: &str) -> Result<Option<f64>, String> {
+    pub(super) fn stated_length(&self, name: &str) -> Result<Option<f64>, String> {
         if self.attribute(name) == Some("auto") {
             return Ok(None);
         }
@@ -116,7 +116,7 @@ impl Element {
     }
 
     /// The width of lines, if it is stated.
-    pub fn stroke_width(&self) -> Result<Option<f64>, String> {
+    pub(super) fn stroke_width(&self) -> Result<Option<f64>, String> {
         let name = "stroke-width";
         self.property(name).map(|text| self.number(name, text)).transpose()
     }
@@ -132,13 +132,13 @@ impl Element {
     }
 
     /// The element as one that only groups what it holds.
-    pub fn as_group(&self) -> Self {
+    pub(super) fn as_group(&self) -> Self {
         Self { name: "g".into(), ..self.clone() }
     }
 
     /// The element as it is drawn by a `use`: a symbol becomes a drawing in the drawing, which has the size that the
     /// `use` states, if it does.
-    pub fn used_by(&self, user: &Self) -> Self {
+    pub(super) fn used_by(&self, user: &Self) -> Self {
         let mut element = self.clone();
         if element.name == "symbol" {
             element.name = "svg".into();

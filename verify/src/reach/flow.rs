@@ -24,7 +24,7 @@ pub(super) struct Exit {
 
 impl Exit {
     /// Whether that is the same instant for all of them, up to rounding.
-    pub fn is_an_instant(self) -> bool {
+    pub(super) fn is_an_instant(self) -> bool {
         const ROUNDING: f64 = 1e-9;
         self.until.width() <= ROUNDING * (1.0 + self.until.upper())
     }
@@ -50,7 +50,7 @@ pub(super) enum FlowPipe<'a> {
 
 impl<'a> FlowPipe<'a> {
     /// The flow from `start`, for at most `remaining` seconds and not beyond `exit`.
-    pub fn new(
+    pub(super) fn new(
         dynamics: &'a Dynamics,
         variables: &[String],
         start: &'a StateSet,
@@ -85,7 +85,7 @@ impl<'a> FlowPipe<'a> {
     }
 
     /// The next stretches; none at the end, and `None` where the flow cannot be enclosed.
-    pub fn advance(&mut self) -> Option<Vec<Stretch>> {
+    pub(super) fn advance(&mut self) -> Option<Vec<Stretch>> {
         match self {
             FlowPipe::Affine { steps, tracks, taken, count, length } => {
                 let block = BLOCK.min(*count - *taken);
@@ -118,7 +118,7 @@ impl<'a> FlowPipe<'a> {
     }
 
     /// Whether all of `duration` has passed.
-    pub fn is_at(&self, duration: f64) -> bool {
+    pub(super) fn is_at(&self, duration: f64) -> bool {
         match self {
             FlowPipe::Affine { taken, length, .. } => *length * *taken as f64 >= duration,
             FlowPipe::Formulas { integration, .. } => integration.time() >= duration,

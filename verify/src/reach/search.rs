@@ -116,7 +116,7 @@ pub(super) struct Search<'a, L, E, S> {
 
 impl<'a, L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'a, L, E, S> {
     /// Among runs up to the horizon of the settings or, where there is none, for `longest` seconds.
-    pub fn new(
+    pub(super) fn new(
         automaton: &'a Automaton<L, E, S>,
         uncertain: &'a [Uncertain],
         starts: Starts<'a>,
@@ -129,7 +129,7 @@ impl<'a, L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'a, L, E, S
     }
 
     /// The nearest run that is found, as `measure` has it; `None` if no run could be made.
-    pub fn nearest<N: Nearness>(
+    pub(super) fn nearest<N: Nearness>(
         &self,
         effort: &Effort,
         measure: impl Fn(&Run) -> Option<N> + Sync,

@@ -18,7 +18,7 @@ pub(super) type Signal = Vec<Interval>;
 
 impl Grid {
     /// The grid of these instants.
-    pub fn new(mut instants: Vec<f64>) -> Self {
+    pub(super) fn new(mut instants: Vec<f64>) -> Self {
         instants.push(0.0);
         instants.retain(|t| t.is_finite() && *t >= 0.0);
         instants.sort_by(f64::total_cmp);
@@ -27,17 +27,17 @@ impl Grid {
     }
 
     /// How many cells there are.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         2 * self.instants.len()
     }
 
     /// The number of the cell that is the instant t, which is on the grid.
-    pub fn at(&self, t: f64) -> usize {
+    pub(super) fn at(&self, t: f64) -> usize {
         2 * self.instants.partition_point(|known| *known < t)
     }
 
     /// The ends of a cell.
-    pub fn ends(&self, cell: usize) -> (f64, f64) {
+    pub(super) fn ends(&self, cell: usize) -> (f64, f64) {
         let start = self.instants[cell / 2];
         let end = match cell % 2 {
             0 => start,
@@ -90,7 +90,7 @@ impl Grid {
     }
 
     /// □: the infimum over the window.
-    pub fn always(&self, window: Window, inner: &Signal) -> Signal {
+    pub(super) fn always(&self, window: Window, inner: &Signal) -> Signal {
         let bounds = |cell| {
             let (first, last) = self.reached(cell, window);
             let reached = &inner[first..=last];
@@ -107,7 +107,7 @@ impl Grid {
     }
 
     /// 𝒰: the supremum over the window of the goal, with what holds until then.
-    pub fn until(&self, window: Window, holds: &Signal, goal: &Signal) -> Signal {
+    pub(super) fn until(&self, window: Window, holds: &Signal, goal: &Signal) -> Signal {
         let bounds = |cell| {
             let (first, last) = self.reached(cell, window);
             // Up to a cell: what holds in all of it, and what holds in all before it.

@@ -53,7 +53,7 @@ pub(super) struct Integration {
 }
 
 impl Integration {
-    pub fn new(
+    pub(super) fn new(
         rates: &[Expression],
         variables: &[String],
         start: &StateSet,
@@ -97,12 +97,12 @@ impl Integration {
     }
 
     /// How far it has come, in seconds.
-    pub fn time(&self) -> f64 {
+    pub(super) fn time(&self) -> f64 {
         self.time.lower()
     }
 
     /// The next step, at most up to `until`; `None` where there is no enclosure.
-    pub fn step(&mut self, template: &Arc<Template>, until: f64) -> Option<Stretch> {
+    pub(super) fn step(&mut self, template: &Arc<Template>, until: f64) -> Option<Stretch> {
         // A little beyond the end is no harm, and the clock has to go on.
         let most = (until - self.time.lower()).max(2.0 * f64::EPSILON * self.time.lower());
         let step = self.enclosed(most)?;

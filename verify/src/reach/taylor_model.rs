@@ -48,14 +48,14 @@ fn zero() -> Interval {
 }
 
 impl TaylorModel {
-    pub fn constant(value: Interval, limits: Limits) -> Self {
+    pub(super) fn constant(value: Interval, limits: Limits) -> Self {
         let middle = value.midpoint();
         let terms = if middle == 0.0 { Vec::new() } else { vec![(Monomial::ONE, middle)] };
         TaylorModel { terms, rest: value - Interval::point(middle), limits }
     }
 
     /// c + Σ aᵢ ξᵢ.
-    pub fn affine(
+    pub(super) fn affine(
         center: f64,
         slopes: impl IntoIterator<Item = (u8, f64)>,
         limits: Limits,
@@ -67,16 +67,16 @@ impl TaylorModel {
         TaylorModel { terms, rest: zero(), limits }
     }
 
-    pub fn terms(&self) -> &[(Monomial, f64)] {
+    pub(super) fn terms(&self) -> &[(Monomial, f64)] {
         &self.terms
     }
 
-    pub fn limits(&self) -> Limits {
+    pub(super) fn limits(&self) -> Limits {
         self.limits
     }
 
     /// All values.
-    pub fn range(&self) -> Interval {
+    pub(super) fn range(&self) -> Interval {
         self.polynomial_range() + self.rest
     }
 
@@ -101,7 +101,7 @@ impl TaylorModel {
     }
 
     /// Moves the terms that `leaves` says into the remainder.
-    pub fn give_up(&mut self, leaves: impl Fn(Monomial, f64) -> bool) {
+    pub(super) fn give_up(&mut self, leaves: impl Fn(Monomial, f64) -> bool) {
         let mut rest = self.rest;
         self.terms.retain(|(monomial, coefficient)| {
             let gone = leaves(*monomial, *coefficient);
@@ -114,7 +114,7 @@ impl TaylorModel {
     }
 
     /// Replaces the remainder by a symbol of its own; `false` if it is too small to need one.
-    pub fn name_rest(&mut self, symbol: u8) -> bool {
+    pub(super) fn name_rest(&mut self, symbol: u8) -> bool {
         let middle = Interval::point(self.rest.midpoint());
         let centered = TaylorModel { rest: self.rest - middle, ..self.clone() };
         *self = centered.plus(&TaylorModel::constant(middle, self.limits));
@@ -128,7 +128,7 @@ impl TaylorModel {
     }
 
     /// Gives symbols other numbers, in their order.
-    pub fn rename(&mut self, number: impl Fn(u8) -> u8) {
+    pub(super) fn rename(&mut self, number: impl Fn(u8) -> u8) {
         for (monomial, _) in &mut self.terms {
             let renamed = monomial.symbols().map(|symbol| Monomial::symbol(number(symbol)));
             *monomial = renamed.fold(Monomial::ONE, Monomial::times);
@@ -137,7 +137,7 @@ impl TaylorModel {
     }
 
     /// At least the sum of the magnitudes of the coefficients.
-    pub fn norm(&self) -> f64 {
+    fn norm(&self) -> f64 {
         sum_up(self.terms.iter().map(|(_, coefficient)| coefficient.abs()))
     }
 
@@ -149,11 +149,11 @@ impl TaylorModel {
         self
     }
 
-    pub fn plus(&self, other: &TaylorModel) -> Self {
+    pub(super) fn plus(&self, other: &TaylorModel) -> Self {
         self.merged(other, |a| a)
     }
 
-    pub fn minus(&self, other: &TaylorModel) -> Self {
+    pub(super) fn minus(&self, other: &TaylorModel) -> Self {
         self.merged(other, |a| -a)
     }
 
@@ -192,7 +192,7 @@ impl TaylorModel {
     }
 
     /// The product with a number of `factor`.
-    pub fn scaled(&self, factor: Interval) -> Self {
+    pub(super) fn scaled(&self, factor: Interval) -> Self {
         let middle = factor.midpoint();
         let spread = Interval::point(self.norm()) * around_zero(radius(factor));
         let rest = self.rest * factor + spread;
@@ -211,7 +211,7 @@ impl TaylorModel {
         (constant, varying)
     }
 
-    pub fn times(&self, other: &TaylorModel) -> Self {
+    pub(super) fn times(&self, other: &TaylorModel) -> Self {
         let Limits { degree, least, .. } = self.limits;
         let mut kept = 0.0;
         let mut products: Vec<(Monomial, f64)> = Vec::new();
@@ -245,7 +245,7 @@ impl TaylorModel {
 
     /// f(self) = Σ cₖ (self − m)ᵏ + r (self − m)ⁿ, where m is the constant term, for a function with
     /// Taylor coefficients `coefficients(k, at)`: those at m, and one at all values for the last.
-    pub fn composed(
+    pub(super) fn composed(
         &self,
         coefficient: impl Fn(usize, Interval) -> Option<Interval>,
     ) -> Option<Self> {

@@ -4,7 +4,7 @@ use super::signal::{Flow, Knot, Signal, Span, Value};
 
 impl Signal {
     /// Adds an instant and, over `span` after it, the lowest of `flows`.
-    pub fn push_lowest(&mut self, value: Value, span: Span, flows: &[Flow]) {
+    pub(super) fn push_lowest(&mut self, value: Value, span: Span, flows: &[Flow]) {
         let mut value = Some(value);
         for ((t, _), flow) in lowest(span, flows) {
             // Where two flows cross, the value is their common limit.
@@ -14,7 +14,7 @@ impl Signal {
     }
 
     /// The smaller of the two values at every instant.
-    pub fn minimum(&self, other: &Signal) -> Signal {
+    pub(super) fn minimum(&self, other: &Signal) -> Signal {
         let mut minimum = Signal::new();
         for pair in paired(self, other) {
             let value = pair.values.0.lower(pair.values.1);
@@ -27,7 +27,7 @@ impl Signal {
     }
 
     /// The larger of the two values at every instant.
-    pub fn maximum(self, other: Signal) -> Signal {
+    pub(super) fn maximum(self, other: Signal) -> Signal {
         self.opposite().minimum(&other.opposite()).opposite()
     }
 }

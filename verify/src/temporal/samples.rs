@@ -176,7 +176,7 @@ pub(super) enum Side {
 
 impl Side {
     /// That which is worst for a formula is best for its negation.
-    pub fn opposite(self) -> Side {
+    pub(super) fn opposite(self) -> Side {
         match self {
             Side::Worst => Side::Best,
             Side::Best => Side::Worst,
@@ -193,7 +193,7 @@ impl Side {
 
 impl Recording {
     /// Follows `predicates` along a trajectory, looking also at `instants`.
-    pub fn new(
+    pub(super) fn new(
         predicates: &[Predicate],
         samples: &(impl Samples + ?Sized),
         instants: &[f64],
@@ -219,23 +219,23 @@ impl Recording {
     }
 
     /// The seconds from the first instant to the last.
-    pub fn duration(&self) -> f64 {
+    pub(super) fn duration(&self) -> f64 {
         self.last.t - self.first.t
     }
 
     /// The predicates with what they do.
-    pub fn accounts(&self) -> impl Iterator<Item = (&Predicate, &Account)> {
+    pub(super) fn accounts(&self) -> impl Iterator<Item = (&Predicate, &Account)> {
         self.literals.iter().map(|literal| (&literal.predicate, &literal.account))
     }
 
     /// The predicate at place `literal`.
-    pub fn predicate(&self, literal: usize) -> &Predicate {
+    pub(super) fn predicate(&self, literal: usize) -> &Predicate {
         &self.literals[literal].predicate
     }
 
     /// The instant of the phase after `jumps` jumps that is nearest to a time, which rounding may have put beside the
     /// phase, and the margin of the predicate at place `literal` there.
-    pub fn margin(&self, literal: usize, jumps: u32, t: f64) -> (HybridTime, f64) {
+    pub(super) fn margin(&self, literal: usize, jumps: u32, t: f64) -> (HybridTime, f64) {
         let looks = &self.literals[literal].account.looks;
         let phase = looks.partition_point(|look| look.at.j < jumps)
             ..looks.partition_point(|look| look.at.j <= jumps);
@@ -249,7 +249,7 @@ impl Recording {
     }
 
     /// The value `margin` at all times.
-    pub fn constant(&self, margin: f64) -> Signal {
+    pub(super) fn constant(&self, margin: f64) -> Signal {
         let mut signal = Signal::new();
         let value = Value::given(margin);
         let flow = Some(Flow::constant(value));
@@ -258,7 +258,7 @@ impl Recording {
     }
 
     /// The predicate at place `literal` over time.
-    pub fn signal(&self, literal: usize, reading: Reading, side: Side) -> Signal {
+    pub(super) fn signal(&self, literal: usize, reading: Reading, side: Side) -> Signal {
         let looks = &self.literals[literal].account.looks;
         let mut signal = Signal::new();
         for (position, look) in looks.iter().enumerate() {

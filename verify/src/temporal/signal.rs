@@ -69,31 +69,31 @@ pub(super) type Span = (f64, f64);
 
 impl Value {
     /// A value that no state decides.
-    pub fn given(margin: f64) -> Value {
+    pub(super) fn given(margin: f64) -> Value {
         Value { margin, origin: None }
     }
 
     /// The smaller value; of equal ones, this one.
-    pub fn lower(self, other: Value) -> Value {
+    pub(super) fn lower(self, other: Value) -> Value {
         if other.margin < self.margin { other } else { self }
     }
 
     /// The larger value; of equal ones, this one.
-    pub fn higher(self, other: Value) -> Value {
+    pub(super) fn higher(self, other: Value) -> Value {
         if other.margin > self.margin { other } else { self }
     }
 
-    pub fn opposite(self) -> Value {
+    fn opposite(self) -> Value {
         Value { margin: -self.margin, ..self }
     }
 }
 
 impl Flow {
-    pub fn constant(value: Value) -> Flow {
+    pub(super) fn constant(value: Value) -> Flow {
         Flow { start: value.margin, end: value.margin, origin: value.origin }
     }
 
-    pub fn is_constant(&self) -> bool {
+    fn is_constant(&self) -> bool {
         self.start == self.end
     }
 
@@ -102,33 +102,33 @@ impl Flow {
         !self.origin.is_some_and(|origin| matches!(origin.time, Time::Moving(_)))
     }
 
-    pub fn opposite(self) -> Flow {
+    pub(super) fn opposite(self) -> Flow {
         Flow { start: -self.start, end: -self.end, ..self }
     }
 
     /// The limit at the left end, which is at `t`.
-    pub fn first(&self, t: f64) -> Value {
+    pub(super) fn first(&self, t: f64) -> Value {
         self.limit(self.start, t)
     }
 
     /// The limit at the right end, which is at `t`.
-    pub fn last(&self, t: f64) -> Value {
+    pub(super) fn last(&self, t: f64) -> Value {
         self.limit(self.end, t)
     }
 
     /// The value at `t` of this flow over `span`; outside of it, that of the nearer end.
-    pub fn at(&self, span: Span, t: f64) -> Value {
+    pub(super) fn at(&self, span: Span, t: f64) -> Value {
         self.limit(self.margin_at(span, t), t)
     }
 
     /// The part over `part` of this flow over `span`.
-    pub fn part(&self, span: Span, part: Span) -> Flow {
+    pub(super) fn part(&self, span: Span, part: Span) -> Flow {
         let start = self.margin_at(span, part.0);
         Flow { start, end: self.margin_at(span, part.1), ..*self }
     }
 
     /// This flow as seen `lead` seconds before.
-    pub fn seen_before(self, lead: f64) -> Flow {
+    fn seen_before(self, lead: f64) -> Flow {
         let origin = self.origin.map(|origin| match origin.time {
             Time::Moving(ahead) => Origin { time: Time::Moving(ahead + lead), ..origin },
             Time::Fixed(_) => origin,
@@ -169,33 +169,33 @@ impl Knot {
 }
 
 impl Signal {
-    pub fn new() -> Signal {
+    pub(super) fn new() -> Signal {
         Signal { knots: Vec::new() }
     }
 
-    pub fn knots(&self) -> &[Knot] {
+    pub(super) fn knots(&self) -> &[Knot] {
         &self.knots
     }
 
     /// The interval of the flow after the knot at `position`.
-    pub fn span(&self, position: usize) -> Span {
+    pub(super) fn span(&self, position: usize) -> Span {
         let end = self.knots.get(position + 1).map_or(f64::INFINITY, |knot| knot.t);
         (self.knots[position].t, end)
     }
 
     /// The time of the first knot.
-    pub fn start(&self) -> f64 {
+    pub(super) fn start(&self) -> f64 {
         self.knots.first().map_or(0.0, |knot| knot.t)
     }
 
     /// How many knots are less than `ahead` seconds after `now`.
-    pub fn passed(&self, ahead: f64, now: f64) -> usize {
+    pub(super) fn passed(&self, ahead: f64, now: f64) -> usize {
         self.knots.partition_point(|knot| knot.lead(ahead, now) < 0.0)
     }
 
     /// When, from `now` on, the knot `next` is `ahead` seconds ahead; never, if there is none. One that rounding alone
     /// has brought together with the last one is met at the same time.
-    pub fn meets(&self, next: usize, ahead: f64, now: f64) -> f64 {
+    pub(super) fn meets(&self, next: usize, ahead: f64, now: f64) -> f64 {
         match self.knots.get(next) {
             Some(knot) if ahead < f64::INFINITY => (knot.t - ahead).max(now),
             _ => f64::INFINITY,
@@ -204,7 +204,7 @@ impl Signal {
 
     /// The knot `next` and those of the same time, if they are `ahead` seconds ahead at `now`. Rounding may put `now`
     /// beside them; knots that rounding does not bring together are met one after the other.
-    pub fn met(&self, next: usize, ahead: f64, now: f64) -> Range<usize> {
+    pub(super) fn met(&self, next: usize, ahead: f64, now: f64) -> Range<usize> {
         let rest = &self.knots[next..];
         let is_met = |knot: &&Knot| knot.lead(ahead, now) == 0.0;
         let time = rest.first().filter(is_met).map(|knot| knot.t - ahead);
@@ -213,7 +213,7 @@ impl Signal {
     }
 
     /// The flow before the knot `next`, as seen over `span` from `ahead` seconds before.
-    pub fn seen(&self, next: usize, ahead: f64, span: Span) -> Flow {
+    pub(super) fn seen(&self, next: usize, ahead: f64, span: Span) -> Flow {
         let last = next.saturating_sub(1);
         let knot = &self.knots[last];
         let flow = knot.flow.unwrap_or_else(|| Flow::constant(knot.value));
@@ -222,7 +222,7 @@ impl Signal {
     }
 
     /// The signal as seen from `ahead` seconds before; of several instants of one time, the first.
-    pub fn seen_before(&self, ahead: f64) -> Signal {
+    pub(super) fn seen_before(&self, ahead: f64) -> Signal {
         let mut result = Signal::new();
         let mut now = self.start();
         let mut next = self.passed(ahead, now);
@@ -244,7 +244,7 @@ impl Signal {
     }
 
     /// Adds a knot, unless a constant flow goes through it and may keep its origin.
-    pub fn push(&mut self, knot: Knot) {
+    pub(super) fn push(&mut self, knot: Knot) {
         let before = self.knots.last().and_then(|last| last.flow);
         let goes_through = before.zip(knot.flow).is_some_and(|(before, after)| {
             let level = |flow: Flow| flow.is_constant() && flow.start == knot.value.margin;
@@ -256,7 +256,7 @@ impl Signal {
     }
 
     /// The signal with all signs turned.
-    pub fn opposite(mut self) -> Signal {
+    pub(super) fn opposite(mut self) -> Signal {
         for knot in &mut self.knots {
             knot.value = knot.value.opposite();
             knot.flow = knot.flow.map(Flow::opposite);

@@ -25,7 +25,7 @@ pub(super) enum Quantity {
 }
 
 impl Quantity {
-    pub fn value(self, sample: &Sample) -> f64 {
+    pub(super) fn value(self, sample: &Sample) -> f64 {
         match self {
             Quantity::Time => sample.t,
             Quantity::Variable(number) => sample.values[number],
@@ -42,7 +42,7 @@ impl Quantity {
     }
 
     /// Values between which the curve through the samples stays, but for less than a line's width.
-    pub fn values(self, samples: &[Sample]) -> Vec<f64> {
+    pub(super) fn values(self, samples: &[Sample]) -> Vec<f64> {
         let mut values: Vec<f64> = samples.iter().map(|sample| self.value(sample)).collect();
         if let Quantity::Variable(number) = self {
             for pair in samples.windows(2) {

@@ -70,7 +70,7 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    pub fn finish(self, height: f64) -> String {
+    pub(super) fn finish(self, height: f64) -> String {
         let sheet = drawing::sheet([0.0; 2], [WIDTH, height]).set("font-size", FONT_SIZE);
         let document = sheet.add(Style::new(style_sheet()));
         format!("{}\n", self.strokes.into_iter().fold(document, Document::add))
@@ -81,16 +81,16 @@ impl Sheet {
     }
 
     /// A line of text whose middle is at the height `y`.
-    pub fn text(&mut self, x: f64, y: f64, text: &str, class: &str) {
+    pub(super) fn text(&mut self, x: f64, y: f64, text: &str, class: &str) {
         self.add(drawing::text(text, [x, y + DESCENT * FONT_SIZE]).set("class", class));
     }
 
-    pub fn line(&mut self, from: Spot, to: Spot, class: &str) {
+    pub(super) fn line(&mut self, from: Spot, to: Spot, class: &str) {
         self.add(drawing::line(from, to).set("class", class));
     }
 
     /// A line along a path in the notation of SVG, in a colour of its own if there is one.
-    pub fn curve(&mut self, path: &str, colour: Option<&str>) {
+    pub(super) fn curve(&mut self, path: &str, colour: Option<&str>) {
         let curve = Path::new().set("class", "curve").set("d", path);
         self.add(match colour {
             Some(colour) => curve.set("style", format!("stroke: {colour}")),
@@ -98,17 +98,17 @@ impl Sheet {
         });
     }
 
-    pub fn dot(&mut self, spot: Spot, class: &str) {
+    pub(super) fn dot(&mut self, spot: Spot, class: &str) {
         self.add(drawing::disc(spot, DOT).set("class", class));
     }
 
     /// The frame of a panel.
-    pub fn panel(&mut self, corner: Spot, size: Spot) {
+    pub(super) fn panel(&mut self, corner: Spot, size: Spot) {
         self.add(rectangle(corner, size).set("class", "panel"));
     }
 
     /// A coloured area that says what it is when it is pointed at.
-    pub fn area(&mut self, corner: Spot, size: Spot, colour: &str, tooltip: &str) {
+    pub(super) fn area(&mut self, corner: Spot, size: Spot, colour: &str, tooltip: &str) {
         self.add(rectangle(corner, size).set("fill", colour).add(Title::new(tooltip)));
     }
 }

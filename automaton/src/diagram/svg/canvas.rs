@@ -85,12 +85,12 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Canvas::default()
     }
 
     /// The strokes as an SVG document.
-    pub fn finish(self, Size { width, height }: Size) -> String {
+    pub(super) fn finish(self, Size { width, height }: Size) -> String {
         let (mut style, mut definitions) =
             (style_sheet(), Definitions::new().add(head("head", "head")));
         if self.is_rich {
@@ -105,7 +105,7 @@ impl Canvas {
     }
 
     /// Puts another picture here, with its upper left corner at `corner`.
-    pub fn inset(&mut self, picture: Canvas, corner: Pixel) {
+    pub(super) fn inset(&mut self, picture: Canvas, corner: Pixel) {
         let shift = format!("translate({} {})", number(corner.x), number(corner.y));
         self.is_rich |= picture.is_rich;
         let group = picture.strokes.into_iter().fold(Group::new(), Group::add);
@@ -113,7 +113,7 @@ impl Canvas {
     }
 
     /// Classes for runs and compositions are used from now on.
-    pub fn enrich(&mut self) {
+    pub(super) fn enrich(&mut self) {
         self.is_rich = true;
     }
 
@@ -122,14 +122,14 @@ impl Canvas {
     }
 
     /// A line of text whose middle is at the height of `place`.
-    pub fn label(&mut self, place: Pixel, text: &str, class: &str) {
+    pub(super) fn label(&mut self, place: Pixel, text: &str, class: &str) {
         let base = place.y + DESCENT * FONT_SIZE;
         self.add(drawing::text(text, [place.x, base]).set("class", class));
     }
 
     /// The box of a location. Its attribute `data-location` is the name, for scripts that show
     /// which location is active.
-    pub fn location(&mut self, corner: Pixel, size: Size, name: &str, is_missed: bool) {
+    pub(super) fn location(&mut self, corner: Pixel, size: Size, name: &str, is_missed: bool) {
         self.is_rich |= is_missed;
         let class = if is_missed { "location missed" } else { "location" };
         let place = rectangle(corner, size).set("class", class).set("data-location", name);
@@ -137,50 +137,50 @@ impl Canvas {
     }
 
     /// The frame of a component.
-    pub fn frame(&mut self, corner: Pixel, size: Size) {
+    pub(super) fn frame(&mut self, corner: Pixel, size: Size) {
         self.add(rectangle(corner, size).set("class", "frame").set("rx", 4));
     }
 
     /// The ground of a row.
-    pub fn stripe(&mut self, corner: Pixel, size: Size) {
+    pub(super) fn stripe(&mut self, corner: Pixel, size: Size) {
         self.add(rectangle(corner, size).set("class", "stripe"));
     }
 
     /// The line below a location.
-    pub fn column_line(&mut self, x: f64, top: f64, bottom: f64) {
+    pub(super) fn column_line(&mut self, x: f64, top: f64, bottom: f64) {
         let line = line(Pixel { x, y: top }, Pixel { x, y: bottom });
         self.add(line.set("class", "column"));
     }
 
     /// The ground of a text that stands on an arrow.
-    pub fn ground(&mut self, at: Pixel, radius: f64) {
+    pub(super) fn ground(&mut self, at: Pixel, radius: f64) {
         self.add(disc([at.x, at.y], radius).set("fill", style::PAPER));
     }
 
     /// Where a transition begins.
-    pub fn dot(&mut self, at: Pixel) {
+    pub(super) fn dot(&mut self, at: Pixel) {
         self.dot_of(at, "dot");
     }
 
     /// A dot of another colour.
-    pub fn dot_of(&mut self, at: Pixel, class: &str) {
+    pub(super) fn dot_of(&mut self, at: Pixel, class: &str) {
         self.add(disc([at.x, at.y], DOT).set("class", class));
     }
 
     /// An arrow with its head at `to`.
-    pub fn arrow(&mut self, from: Pixel, to: Pixel, class: &str) {
+    pub(super) fn arrow(&mut self, from: Pixel, to: Pixel, class: &str) {
         let line = line(from, to).set("class", format!("arrow {class}"));
         self.add(line.set("marker-end", head_of(class)));
     }
 
     /// A line or an arrow along a path in the notation of SVG.
-    pub fn path(&mut self, path: &str, class: &str, has_head: bool) {
+    pub(super) fn path(&mut self, path: &str, class: &str, has_head: bool) {
         let stroke = Path::new().set("class", class).set("d", path);
         self.add(if has_head { stroke.set("marker-end", head_of(class)) } else { stroke });
     }
 
     /// From a dot above `at` round to `at`.
-    pub fn returning_arrow(&mut self, at: Pixel, class: &str) {
+    pub(super) fn returning_arrow(&mut self, at: Pixel, class: &str) {
         let [reach, height] = LOOP;
         let above = at.y - height;
         self.dot(Pixel { x: at.x, y: above });
@@ -196,7 +196,7 @@ impl Canvas {
     }
 
     /// The arrow from nowhere to the initial location, whose box is `length` below.
-    pub fn initial_arrow(&mut self, from: Pixel, length: f64) {
+    pub(super) fn initial_arrow(&mut self, from: Pixel, length: f64) {
         let start = Pixel { y: from.y + DOT, ..from };
         self.dot(start);
         self.arrow(start, Pixel { y: from.y + length, ..from }, "must");

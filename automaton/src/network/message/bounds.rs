@@ -36,7 +36,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    pub fn admit(&self, message: &Message) -> bool {
+    pub(super) fn admit(&self, message: &Message) -> bool {
         match message {
             Message::Beacon { period, roll, confirmed, beacon } => {
                 let latest = period.saturating_add(PERIODS_APART);

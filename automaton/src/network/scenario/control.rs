@@ -157,17 +157,17 @@ pub enum Values {
 /// The shortest length that a setting may have, in ranges of the links: what a robot could not
 /// cover within the longest mission, or what coordinates of [`FARTHEST`] cannot resolve, is a
 /// mistake.
-pub const SHORTEST: f64 = 1e-6;
+pub(super) const SHORTEST: f64 = 1e-6;
 
 /// The largest magnitude of a coordinate, in ranges of the links.
-pub const FARTHEST: f64 = 1e6;
+pub(super) const FARTHEST: f64 = 1e6;
 
 /// The largest magnitude of a coordinate in any unit: rounding stays below the tolerances of motion problems, which are
 /// 1e-12.
 pub const LARGEST_COORDINATE: f64 = 1e4;
 
 /// The smallest clearance in any unit: properties are held up to 1e-6.
-pub const SMALLEST_CLEARANCE: f64 = 1e-4;
+pub(super) const SMALLEST_CLEARANCE: f64 = 1e-4;
 
 /// The most control periods that a scenario may state, of a mission and of the times of its tasks.
 pub const MOST_PERIODS: u32 = 1_000_000_000;

@@ -17,7 +17,7 @@ use super::verdicts::{Trial, missing, parent_of, tree_of};
 use crate::network::bound::Spans;
 
 /// The certificate of a task that is given up, or of a mission.
-pub fn of(judge: &Judge, outcome: Outcome, task: Option<usize>) -> Option<Certificate> {
+pub(super) fn of(judge: &Judge, outcome: Outcome, task: Option<usize>) -> Option<Certificate> {
     let last = judge.previous.as_ref()?;
     match outcome {
         Outcome::UnreachableTask => unreachable(judge, task?).map(Certificate::Unreachable),

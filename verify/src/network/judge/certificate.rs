@@ -22,21 +22,21 @@ use crate::network::bound::Spans;
 use crate::network::limits::SLACK;
 
 /// Between robots this many ρ apart, or nearer, no third one passes.
-pub const PASSAGE: f64 = 4.0;
+pub(super) const PASSAGE: f64 = 4.0;
 /// A robot this many ρ from a wall, or nearer, is at it.
-pub const TOUCHED: f64 = 1.2;
+pub(super) const TOUCHED: f64 = 1.2;
 /// A link is at its limit from this share of it on.
-pub const AT_LIMIT: f64 = 0.95;
+pub(super) const AT_LIMIT: f64 = 0.95;
 /// A robot that sends for this share of its time sends nearly all the time.
-pub const SATURATED: f64 = 0.95;
+pub(super) const SATURATED: f64 = 0.95;
 /// A residual below this share of the reserve is next to nothing.
-pub const SPENT: f64 = 0.1;
+pub(super) const SPENT: f64 = 0.1;
 
 /// What is wrong with a claim, as a clause.
 type Complaint = Result<(), String>;
 
 /// How a task or a mission is said to have ended, with the certificate of that.
-pub struct Claim<'a> {
+pub(super) struct Claim<'a> {
     /// How.
     pub outcome: Outcome,
     /// The task concerned.
@@ -47,7 +47,7 @@ pub struct Claim<'a> {
 
 impl<'a> Claim<'a> {
     /// The claim of the end of a mission.
-    pub fn of(end: &'a End) -> Self {
+    pub(super) fn of(end: &'a End) -> Self {
         Claim { outcome: end.outcome, task: end.task, certificate: end.certificate.as_ref() }
     }
 }
@@ -57,7 +57,7 @@ impl<'a> Claim<'a> {
 /// # Errors
 ///
 /// What it does not show.
-pub fn check(judge: &Judge, end: &Claim) -> Complaint {
+pub(super) fn check(judge: &Judge, end: &Claim) -> Complaint {
     let Some(certificate) = end.certificate else {
         return Err(format!("the outcome “{}” comes without a certificate", end.outcome.name()));
     };

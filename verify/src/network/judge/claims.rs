@@ -27,7 +27,7 @@ const STILL: f64 = 0.3;
 /// # Errors
 ///
 /// The first that does not, as [`Property::Record`].
-pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute> {
+pub(super) fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute> {
     let mut robots = Vec::new();
     let mut task = None;
     match event {

@@ -28,7 +28,7 @@ const MAKING_WAY: f64 = 6.2;
 
 /// What the judge has derived lately, and what it waits for.
 #[derive(Clone, Debug)]
-pub struct Conclusions {
+pub(super) struct Conclusions {
     /// For how many control periods news may be on its way: it passes one link in a round of
     /// messages, and a period has at least one round.
     patience: usize,
@@ -62,7 +62,7 @@ pub struct Conclusions {
 
 impl Conclusions {
     /// The conclusions before the first period, in a network of `nodes` nodes.
-    pub fn new(nodes: usize) -> Self {
+    pub(super) fn new(nodes: usize) -> Self {
         Conclusions {
             patience: nodes,
             task: Lately::new(None),
@@ -86,7 +86,7 @@ impl Conclusions {
 
     /// An event at `step`, after which the ledger is this: a path that is announced is the one that
     /// was seen before.
-    pub fn enter(
+    pub(super) fn enter(
         &mut self,
         event: &MissionEvent,
         ledger: &Ledger,
@@ -178,7 +178,7 @@ impl Conclusions {
 
     /// Whether the mission should have ended before this step: the robots have known that it has for long, and have
     /// had the time to settle, if they do.
-    pub fn overdue(&self, step: usize, settles: bool) -> bool {
+    pub(super) fn overdue(&self, step: usize, settles: bool) -> bool {
         let is_past =
             |since: Option<usize>, wait: usize| since.is_some_and(|since| since + wait < step);
         let settling = if settles { LONGEST_SETTLING } else { 0 };

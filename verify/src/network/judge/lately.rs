@@ -5,19 +5,19 @@
 /// News passes one link in a round of messages, and an observer reads the robot that knows the
 /// newest: what it shows may be what was true some control periods ago.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lately<T> {
+pub(super) struct Lately<T> {
     current: T,
     /// Earlier values, each with the last step at which it was true.
     past: Vec<(T, usize)>,
 }
 
 impl<T: PartialEq> Lately<T> {
-    pub fn new(value: T) -> Self {
+    pub(super) fn new(value: T) -> Self {
         Lately { current: value, past: Vec::new() }
     }
 
     /// From `step` on it has this value; what is older than `patience` steps is forgotten.
-    pub fn update(&mut self, value: T, step: usize, patience: usize) {
+    pub(super) fn update(&mut self, value: T, step: usize, patience: usize) {
         if value != self.current {
             let earlier = std::mem::replace(&mut self.current, value);
             self.past.push((earlier, step));
@@ -26,12 +26,12 @@ impl<T: PartialEq> Lately<T> {
     }
 
     /// The value now.
-    pub fn current(&self) -> &T {
+    pub(super) fn current(&self) -> &T {
         &self.current
     }
 
     /// The value now and those that it had lately.
-    pub fn values(&self) -> impl Iterator<Item = &T> {
+    pub(super) fn values(&self) -> impl Iterator<Item = &T> {
         std::iter::once(&self.current).chain(self.past.iter().map(|(value, _)| value))
     }
 }

@@ -13,7 +13,7 @@ use crate::network::property::Property;
 /// was when it came to rest. Any other robot has none, as it moves with a team or along Σ; that it may be without a
 /// fixed post is checked with the posts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Places {
+pub(super) struct Places {
     of_robots: Vec<Option<Point>>,
     /// The places of Σ when it was announced, and whether each is that of a fixed post.
     path: Vec<(Point, bool)>,
@@ -24,7 +24,7 @@ pub struct Places {
 }
 
 impl Places {
-    pub fn new(robots: usize) -> Self {
+    pub(super) fn new(robots: usize) -> Self {
         Places {
             of_robots: vec![None; robots],
             path: Vec::new(),
@@ -34,19 +34,19 @@ impl Places {
     }
 
     /// The place of a robot's post.
-    pub fn of(&self, robot: usize) -> Option<Point> {
+    pub(super) fn of(&self, robot: usize) -> Option<Point> {
         self.of_robots[robot]
     }
 
     /// A place of Σ, and whether it is that of a fixed post; otherwise it is where its robot was, or
     /// came to rest.
-    pub fn on_path(&self, place: usize) -> Option<(Point, bool)> {
+    pub(super) fn on_path(&self, place: usize) -> Option<(Point, bool)> {
         self.path.get(place).copied()
     }
 
     /// Robots that exchange duties exchange places; a path is announced from place to place, and a
     /// subgroup that arrives takes the places ahead.
-    pub fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) {
+    pub(super) fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) {
         match event {
             MissionEvent::DutiesExchanged { mover, parked } => {
                 self.of_robots.swap(*mover, *parked);
@@ -82,7 +82,7 @@ impl Places {
     }
 
     /// The places after the events of a period.
-    pub fn update(&mut self, snapshot: &Snapshot) {
+    pub(super) fn update(&mut self, snapshot: &Snapshot) {
         for (robot, place) in self.of_robots.iter_mut().enumerate() {
             if let Some(post) = snapshot.posts.iter().find(|post| post.holder == robot) {
                 *place = Some(post.reference);
@@ -95,7 +95,7 @@ impl Places {
     }
 
     /// [`Property::Leash`].
-    pub fn hold(&self, scene: &Scene) -> Result<(), Dispute> {
+    pub(super) fn hold(&self, scene: &Scene) -> Result<(), Dispute> {
         let Some(previous) = scene.previous else { return Ok(()) };
         for (robot, place) in self.of_robots.iter().enumerate() {
             let Some(place) = place.filter(|_| !previous.active_team.contains(&robot)) else {

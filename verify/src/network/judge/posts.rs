@@ -9,7 +9,7 @@ use crate::network::property::Property;
 
 /// A robot that answers for a task is in the tree, and a leaf or the leader that is not yet
 /// released.
-pub fn holders_hold(snapshot: &Snapshot) -> Result<(), Dispute> {
+pub(super) fn holders_hold(snapshot: &Snapshot) -> Result<(), Dispute> {
     for &(task, robot) in &snapshot.serviced {
         let role = snapshot.roles[robot];
         let is_in_tree = snapshot.tree.iter().any(|&(child, _)| child == robot);
@@ -27,7 +27,7 @@ pub fn holders_hold(snapshot: &Snapshot) -> Result<(), Dispute> {
 
 /// Part of [`Property::Posts`]: a robot that is not `under_way` keeps the post that it holds, at its
 /// place and with its task.
-pub fn stay(
+pub(super) fn stay(
     previous: &Snapshot,
     snapshot: &Snapshot,
     under_way: impl Fn(usize) -> bool,
@@ -61,7 +61,7 @@ fn post_of(robot: usize, snapshot: &Snapshot) -> Option<&PostView> {
 
 /// Part of [`Property::Posts`]: a post is for the task that its holder answers for. While two robots
 /// exchange duties both hold a post for it, and observers name one of them.
-pub fn tasks_agree(snapshot: &Snapshot) -> Result<(), Dispute> {
+pub(super) fn tasks_agree(snapshot: &Snapshot) -> Result<(), Dispute> {
     for post in &snapshot.posts {
         let robot = post.holder;
         let held = snapshot.serviced.iter().find(|(_, it)| *it == robot).map(|(task, _)| *task);
@@ -84,7 +84,10 @@ pub fn tasks_agree(snapshot: &Snapshot) -> Result<(), Dispute> {
 
 /// Part of [`Property::Posts`]: a node, junction or leaf that neither moves with the primary team nor
 /// walks holds one post, and redundant robots hold none.
-pub fn are_held(in_team: impl Fn(usize) -> bool, snapshot: &Snapshot) -> Result<(), Dispute> {
+pub(super) fn are_held(
+    in_team: impl Fn(usize) -> bool,
+    snapshot: &Snapshot,
+) -> Result<(), Dispute> {
     for (robot, role) in snapshot.roles.iter().enumerate() {
         let posts = snapshot.posts.iter().filter(|post| post.holder == robot).count();
         let moves = in_team(robot) || snapshot.path.contains(&robot);
@@ -107,7 +110,7 @@ pub fn are_held(in_team: impl Fn(usize) -> bool, snapshot: &Snapshot) -> Result<
 }
 
 /// Part of [`Property::Duties`]: no robot but a leader that awaits its release answers for a task that is over.
-pub fn serve_what_is_open(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
+pub(super) fn serve_what_is_open(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
     let is_over = |&&(task, robot): &&(usize, usize)| {
         ledger.closed.contains(&task) && snapshot.roles[robot] != Role::Leader
     };
@@ -143,7 +146,7 @@ pub(super) fn closings_are_told(ledger: &Ledger, scene: &Scene) -> Result<(), Di
 /// Part of [`Property::Posts`]: the task of a post is the one that its holder answers for, a leaf
 /// has one, and a post is a junction if more than one branch parts there. The primary team is one branch,
 /// also while a member of it has yet to attach to the newcomer.
-pub fn are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
+pub(super) fn are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
     let answers_for =
         |robot: usize| snapshot.serviced.iter().find(|(_, it)| *it == robot).map(|(task, _)| *task);
     for post in &snapshot.posts {

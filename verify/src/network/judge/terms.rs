@@ -264,7 +264,7 @@ fn end_of(since: usize, lasts: u32) -> u32 {
 }
 
 /// Whether these tasks stay once they are serviced: then all of them are serviced at the same time.
-pub fn all_stay(scenario: &Scenario, tasks: &[usize]) -> bool {
+pub(super) fn all_stay(scenario: &Scenario, tasks: &[usize]) -> bool {
     let stays = |task: &Task| task.lasts.is_none() && task.withdrawn.is_none();
     tasks.iter().all(|&task| stays(&scenario.task[task]))
 }

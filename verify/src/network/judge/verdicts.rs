@@ -17,7 +17,7 @@ use crate::network::bound::Spans;
 
 /// What has been tried for the task that is pursued.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tried {
+pub(super) struct Tried {
     /// The access points in whose trees no recruit was left.
     trees: BTreeSet<usize>,
     /// The access point in whose tree the leader was elected: those of its robots that are left were asked then.
@@ -28,7 +28,7 @@ pub struct Tried {
 
 /// A call for a recruit that no robot could answer.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
+pub(super) struct Trial {
     /// The robot that called.
     pub caller: usize,
     /// Its team.
@@ -47,7 +47,12 @@ pub struct Trial {
 
 impl Tried {
     /// An event, with the ledger before it and the snapshots before and after.
-    pub fn enter(&mut self, event: &MissionEvent, ledger: &Ledger, scenes: [Option<&Snapshot>; 2]) {
+    pub(super) fn enter(
+        &mut self,
+        event: &MissionEvent,
+        ledger: &Ledger,
+        scenes: [Option<&Snapshot>; 2],
+    ) {
         match event {
             MissionEvent::TaskAnnounced { .. }
             | MissionEvent::TaskReannounced { .. }
@@ -80,7 +85,7 @@ impl Tried {
     }
 
     /// The call that is under way by the ledger, given up after this instant; none if no robot calls.
-    pub fn trial(&self, ledger: &Ledger, snapshot: &Snapshot, then: Then) -> Option<Trial> {
+    pub(super) fn trial(&self, ledger: &Ledger, snapshot: &Snapshot, then: Then) -> Option<Trial> {
         let caller = *ledger.primary_team.first()?;
         (ledger.stage() == Stage::Calling).then(|| Trial {
             caller,
@@ -94,12 +99,12 @@ impl Tried {
     }
 
     /// The calls that no robot could answer since the task was announced, but for one that ended the mission.
-    pub fn trials(&self) -> &[Trial] {
+    pub(super) fn trials(&self) -> &[Trial] {
         &self.trials
     }
 
     /// A robot that could have helped where the mission ended because none could, in a clause.
-    pub fn overlooked(&self, ledger: &Ledger, snapshot: &Snapshot) -> Option<String> {
+    pub(super) fn overlooked(&self, ledger: &Ledger, snapshot: &Snapshot) -> Option<String> {
         let caller = *ledger.primary_team.first()?;
         if ledger.stage() != Stage::Calling {
             return Some(format!("robot {caller}, the first of its team, has not called for one"));
@@ -136,7 +141,7 @@ impl Tried {
 
 /// How many robots these tasks take at least, if that is more than there are; none where some of them may be over
 /// before the last is announced.
-pub fn missing(scenario: &ValidScenario, tasks: &[usize]) -> Option<usize> {
+pub(super) fn missing(scenario: &ValidScenario, tasks: &[usize]) -> Option<usize> {
     if !all_stay(scenario, tasks) {
         return None;
     }
@@ -145,12 +150,12 @@ pub fn missing(scenario: &ValidScenario, tasks: &[usize]) -> Option<usize> {
 }
 
 /// The parent of a robot in the tree, as a node.
-pub fn parent_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
+pub(super) fn parent_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
     snapshot.tree.iter().find(|(child, _)| *child == robot).map(|&(_, parent)| parent)
 }
 
 /// The access point at the root of the tree that a robot is in.
-pub fn tree_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
+pub(super) fn tree_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
     let robots = snapshot.roles.len();
     let mut node = robot;
     for _ in 0..=robots {

@@ -19,7 +19,12 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    pub fn new(model: &Model, number: usize, settings: &Settings, extra: &[Vec<f64>]) -> Self {
+    pub(super) fn new(
+        model: &Model,
+        number: usize,
+        settings: &Settings,
+        extra: &[Vec<f64>],
+    ) -> Self {
         let place = &model.locations()[number];
         let dimension = model.variables().len();
         let mut template = match &settings.directions {

@@ -20,7 +20,7 @@ impl<'a> Simplex<'a> {
     /// How often the basis changes, at most, for each coordinate.
     const PIVOTS: usize = 8;
 
-    pub fn new(polytope: &'a Polytope, direction: &[f64]) -> Self {
+    pub(super) fn new(polytope: &'a Polytope, direction: &[f64]) -> Self {
         let dimension = direction.len();
         let positive = |axis: usize| direction[axis] >= 0.0;
         let basis = (0..dimension).map(|axis| 2 * axis + usize::from(!positive(axis))).collect();
@@ -33,7 +33,7 @@ impl<'a> Simplex<'a> {
     }
 
     /// Improves the basis; `false` where the dual is unbounded, so that the polytope is empty.
-    pub fn run(&mut self) -> bool {
+    pub(super) fn run(&mut self) -> bool {
         for _ in 0..Self::PIVOTS * self.basis.len() {
             let Some(entering) = self.entering() else { return true };
             let direction = &self.polytope.template.directions[entering];
@@ -101,7 +101,7 @@ impl<'a> Simplex<'a> {
         self.basis[leaving] = entering;
     }
 
-    pub fn multipliers(&self) -> Vec<(usize, f64)> {
+    pub(super) fn multipliers(&self) -> Vec<(usize, f64)> {
         self.basis.iter().copied().zip(self.values.iter().copied()).collect()
     }
 }

@@ -40,7 +40,7 @@ pub(in crate::reach) struct NotSmooth(pub String);
 
 impl SeriesProgram {
     /// The rates of all variables, over these variables.
-    pub fn compile(rates: &[Expression], variables: &[String]) -> Result<Self, NotSmooth> {
+    pub(crate) fn compile(rates: &[Expression], variables: &[String]) -> Result<Self, NotSmooth> {
         let mut writer = Writer { variables, operations: Vec::new(), known: BTreeMap::new() };
         let results = rates.iter().map(|rate| writer.series(rate)).collect::<Result<_, _>>()?;
         Ok(SeriesProgram { operations: writer.operations, results })

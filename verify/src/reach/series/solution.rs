@@ -8,7 +8,7 @@ use super::{Coefficient, Function};
 impl SeriesProgram {
     /// The coefficients x₀, …, xₙ of each variable, for n = `order`; `None` where a formula has no
     /// value.
-    pub fn solve<C: Coefficient>(
+    pub(crate) fn solve<C: Coefficient>(
         &self,
         start: &[C],
         order: usize,

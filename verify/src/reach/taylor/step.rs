@@ -101,7 +101,7 @@ pub(super) fn combined<'a>(
 
 impl Step {
     /// The state at the end.
-    pub fn end(&self) -> Vec<TaylorModel> {
+    pub(super) fn end(&self) -> Vec<TaylorModel> {
         let time = Interval::point(self.length);
         let power = power_of(time, self.coefficients.first().map_or(0, Vec::len));
         let end = |(series, last): (&Vec<TaylorModel>, &Interval)| {
@@ -121,7 +121,7 @@ impl Step {
     /// Σ aⱼ tʲ over times t from 0 to 1 lies between its smallest and its largest Bernstein coefficient
     /// (Farouki 2012, *The Bernstein polynomial basis: a centennial retrospective*,
     /// [doi:10.1016/j.cagd.2012.03.001](https://doi.org/10.1016/j.cagd.2012.03.001)).
-    pub fn bound_along(&self, direction: &[f64]) -> f64 {
+    pub(super) fn bound_along(&self, direction: &[f64]) -> f64 {
         let order = self.coefficients.first().map_or(0, Vec::len);
         let length = Interval::point(self.length);
         let within = Interval::new(0.0, self.length).unwrap_or(Interval::WHOLE);

@@ -10,18 +10,18 @@ use super::Limits;
 pub(in crate::reach) struct Monomial(u64);
 
 impl Monomial {
-    pub const ONE: Monomial = Monomial(0);
+    pub(super) const ONE: Monomial = Monomial(0);
 
-    pub fn symbol(number: u8) -> Self {
+    pub(super) fn symbol(number: u8) -> Self {
         Monomial(u64::from(number) + 1)
     }
 
-    pub fn degree(self) -> usize {
+    pub(super) fn degree(self) -> usize {
         8 - self.0.leading_zeros() as usize / 8
     }
 
     /// Its degree, as the limits count it.
-    pub fn counted(self, limits: Limits) -> usize {
+    pub(super) fn counted(self, limits: Limits) -> usize {
         // The lowest byte is the symbol with the largest number.
         let has_error = (self.0 & 0xFF) as usize > limits.first_error;
         let more = if has_error { limits.degree.saturating_sub(2) } else { 0 };
@@ -29,12 +29,12 @@ impl Monomial {
     }
 
     /// The numbers of its symbols, each as often as it is a factor.
-    pub fn symbols(self) -> impl Iterator<Item = u8> {
+    pub(crate) fn symbols(self) -> impl Iterator<Item = u8> {
         self.0.to_le_bytes().into_iter().take_while(|byte| *byte > 0).map(|byte| byte - 1)
     }
 
     /// Of degrees that add up to 8 at most.
-    pub fn times(self, other: Monomial) -> Monomial {
+    pub(super) fn times(self, other: Monomial) -> Monomial {
         if self.0 == 0 || other.0 == 0 {
             return Monomial(self.0 | other.0);
         }
@@ -49,7 +49,7 @@ impl Monomial {
     }
 
     /// Whether every symbol occurs an even number of times, so that it is never negative.
-    pub fn is_square(self) -> bool {
+    pub(super) fn is_square(self) -> bool {
         let mut rest = self.0;
         while rest != 0 {
             if rest & 0xFF != (rest >> 8) & 0xFF {
@@ -61,7 +61,7 @@ impl Monomial {
     }
 
     /// Its values.
-    pub fn range(self) -> Interval {
+    pub(super) fn range(self) -> Interval {
         if self == Monomial::ONE {
             return Interval::point(1.0);
         }
