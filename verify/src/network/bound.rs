@@ -98,7 +98,7 @@ impl Spans {
     }
 
     /// No link is longer than this: the range u of the radio.
-    pub const fn longest_link(&self) -> f64 {
+    pub(super) const fn longest_link(&self) -> f64 {
         self.longest_link
     }
 
@@ -144,7 +144,7 @@ impl Spans {
     /// A bound from below on the length of any network that joins the access points with these tasks: it is no shorter
     /// than the way to the farthest of them and, of a spanning tree of k places, no shorter than the share k / (2k − 2),
     /// in every metric.
-    pub fn least_length(&self, tasks: &[usize]) -> f64 {
+    pub(super) fn least_length(&self, tasks: &[usize]) -> f64 {
         let farthest = tasks.iter().map(|&task| self.from_access[task]).fold(0.0, f64::max);
         let share = (tasks.len() + 1) as f64 / (2 * tasks.len()).max(1) as f64;
         farthest.max(share * self.spanning_tree(tasks))

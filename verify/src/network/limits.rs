@@ -85,7 +85,7 @@ impl Limits {
 
     /// R as robots reckon with it whose places are this far apart, as far as they know: that of a link
     /// which is longer by what the two may be off.
-    pub fn reckoned_reliability(&self, distance: f64) -> f64 {
+    pub(super) fn reckoned_reliability(&self, distance: f64) -> f64 {
         self.reliability(distance + self.settings().link_margin())
     }
 
@@ -94,13 +94,8 @@ impl Limits {
         self.site.radio.range()
     }
 
-    /// d_hard: along geodesics no link of the tree is longer, where robots stand.
-    pub fn longest_tree_link(&self) -> f64 {
-        self.site.radio.distance_at(self.settings().tree_reliability)
-    }
-
     /// d_build: up to which length links of the tree are made, before and after the team has stretched them.
-    pub fn link_to_be_made(&self, stretched: bool) -> f64 {
+    pub(super) fn link_to_be_made(&self, stretched: bool) -> f64 {
         self.site.lengths(stretched).build
     }
 

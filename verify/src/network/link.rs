@@ -81,7 +81,7 @@ pub fn load(flows: &[HeldFlow], reliability: impl Fn(f64) -> f64) -> f64 {
 
 /// The places of the nodes: robots first, then access points.
 #[derive(Clone, Copy, Debug)]
-pub struct NodePositions<'a> {
+pub(super) struct NodePositions<'a> {
     /// x_1 … x_N.
     pub robots: &'a [Point],
     /// Where the access points stand.
@@ -90,13 +90,13 @@ pub struct NodePositions<'a> {
 
 impl NodePositions<'_> {
     /// Where a node is, if there is one of that number.
-    pub fn of(&self, node: usize) -> Option<Point> {
+    pub(super) fn of(&self, node: usize) -> Option<Point> {
         let fixed = || self.access_points.get(node - self.robots.len());
         self.robots.get(node).or_else(fixed).copied()
     }
 
     /// The distance of two nodes; infinite if one does not exist.
-    pub fn distance(&self, one: usize, other: usize) -> f64 {
+    pub(super) fn distance(&self, one: usize, other: usize) -> f64 {
         match (self.of(one), self.of(other)) {
             (Some(one), Some(other)) => (one - other).norm(),
             _ => f64::INFINITY,

@@ -9,8 +9,7 @@
 //!
 //! 1. pure functions that state the properties: over identities only, in [`tree`], [`team`],
 //!    [`election`] and [`duty`] (small slices, bounded loops, no allocation, so that a model
-//!    checker runs the same code); over places and flows, in [`motion`], [`separation`] and
-//!    [`link`];
+//!    checker runs the same code); over places and flows, in [`motion`] and [`link`];
 //! 2. checks that apply them to what observers record and name the offenders: [`instant`] for
 //!    one snapshot, [`period`] for two;
 //! 3. the [`Monitor`] that runs every check over a mission, and the [`Judge`], which holds events
@@ -88,7 +87,7 @@ pub mod judge;
 pub mod link;
 pub mod motion;
 pub mod period;
-pub mod separation;
+mod separation;
 pub mod storm;
 pub mod team;
 pub mod tree;

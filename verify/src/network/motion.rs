@@ -44,13 +44,13 @@ pub fn closest_approach(first: &Segment, second: &Segment) -> Approach {
 /// The largest distance of two simultaneous motions.
 ///
 /// The norm of an affine function of s is convex, so the maximum lies at one of the two ends.
-pub fn farthest_distance(first: &Segment, second: &Segment) -> f64 {
+pub(super) fn farthest_distance(first: &Segment, second: &Segment) -> f64 {
     (second.from - first.from).norm().max((second.to - first.to).norm())
 }
 
 /// The fractions of the period during which a motion is within `radius` of a place: an interval
 /// [s₀, s₁] within [0, 1], or nothing.
-pub fn interval_within(motion: &Segment, place: Point, radius: f64) -> Option<(f64, f64)> {
+pub(super) fn interval_within(motion: &Segment, place: Point, radius: f64) -> Option<(f64, f64)> {
     let (start_inside, end_inside) =
         ((motion.from - place).norm() <= radius, (motion.to - place).norm() <= radius);
     if start_inside && end_inside {
@@ -71,7 +71,7 @@ pub fn interval_within(motion: &Segment, place: Point, radius: f64) -> Option<(f
 }
 
 /// The first fraction of the period that none of the intervals covers, if there is one.
-pub fn first_gap(intervals: &mut [(f64, f64)]) -> Option<f64> {
+pub(super) fn first_gap(intervals: &mut [(f64, f64)]) -> Option<f64> {
     intervals.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut covered = 0.0;
     for &(start, end) in intervals.iter() {

@@ -46,7 +46,7 @@ impl<'a> Period<'a> {
     /// # Errors
     ///
     /// As for [`between`](Self::between).
-    pub fn ending(
+    pub(super) fn ending(
         previous: Option<&'a Snapshot>,
         snapshot: &'a Snapshot,
     ) -> Result<Self, Violation> {
@@ -62,7 +62,7 @@ impl<'a> Period<'a> {
     /// # Errors
     ///
     /// [`Property::Record`] if a period is left out, time goes back, or the numbers of robots differ.
-    pub fn part(before: &'a Snapshot, after: &'a Snapshot) -> Result<Self, Violation> {
+    pub(super) fn part(before: &'a Snapshot, after: &'a Snapshot) -> Result<Self, Violation> {
         let follows = (before.step..=before.step + 1).contains(&after.step)
             && after.time >= before.time
             && after.positions.len() == before.positions.len();
@@ -85,7 +85,7 @@ impl<'a> Period<'a> {
     }
 
     /// The opening of a mission: a period without duration in which every robot rests.
-    pub fn opening(snapshot: &'a Snapshot) -> Self {
+    pub(super) fn opening(snapshot: &'a Snapshot) -> Self {
         let motions = snapshot.positions.iter().copied().map(Segment::still).collect();
         Period { before: snapshot, after: snapshot, motions }
     }
@@ -125,7 +125,7 @@ pub fn separation(period: &Period, limits: &Limits) -> Result<Option<Extreme>, V
 /// # Errors
 ///
 /// The closest pair, if it comes nearer than 2ρ.
-pub fn separation_among(
+pub(super) fn separation_among(
     robots: &[usize],
     period: &Period,
     limits: &Limits,
@@ -207,7 +207,7 @@ pub fn standstill(period: &Period) -> Result<(), Violation> {
 /// # Errors
 ///
 /// The first that is not.
-pub fn absent_stay(period: &Period) -> Result<(), Violation> {
+pub(super) fn absent_stay(period: &Period) -> Result<(), Violation> {
     let absent = [period.before, period.after].map(|it| &it.absent);
     stay(period, |robot| absent.iter().all(|nodes| nodes.contains(&robot)), "absent")
 }

@@ -11,7 +11,7 @@ use std::fmt;
 pub enum Property {
     /// See [`instant::record`](super::instant::record).
     Record,
-    /// See [`separation`](super::separation).
+    /// See [`period::separation`](super::period::separation).
     Separation,
     /// See [`period::clearance`](super::period::clearance).
     Clearance,

@@ -8,7 +8,7 @@ use super::motion::{Approach, closest_approach};
 
 /// The pair of robots that come nearest to each other during a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClosestPair {
+pub(super) struct ClosestPair {
     /// The robot with the lower number.
     pub first: usize,
     /// The other robot.
@@ -24,7 +24,7 @@ pub struct ClosestPair {
 /// side, and only neighbouring cells are compared. If no pair is that near, `reach` is doubled:
 /// then all robots are more than the old `reach` apart and few share a cell, so every round
 /// costs O(N log N), and O(log(extent / reach)) rounds suffice. Ties go to the lower numbers.
-pub fn closest_pair(motions: &[Segment], reach: f64) -> Option<ClosestPair> {
+pub(super) fn closest_pair(motions: &[Segment], reach: f64) -> Option<ClosestPair> {
     if motions.len() < 2 {
         return None;
     }

@@ -51,7 +51,7 @@ impl AffineFlow {
 
 /// A flow cut into steps of one length, ready to carry directions.
 #[derive(Clone, Debug)]
-pub struct Steps<'a> {
+pub(super) struct Steps<'a> {
     flow: &'a AffineFlow,
     start: &'a StateSet,
     /// In seconds.
@@ -65,7 +65,7 @@ pub struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// The flow from `start` in steps of `length` > 0 seconds.
-    pub fn new(flow: &'a AffineFlow, start: &'a StateSet, length: f64) -> Self {
+    pub(super) fn new(flow: &'a AffineFlow, start: &'a StateSet, length: f64) -> Self {
         let matrix = &flow.matrix;
         let step = Interval::point(length);
         let within = Interval::new(0.0, length).unwrap_or(Interval::WHOLE);
@@ -77,7 +77,7 @@ impl<'a> Steps<'a> {
     }
 
     /// Prepares for `count` steps.
-    pub fn reserve(&mut self, count: usize) {
+    pub(super) fn reserve(&mut self, count: usize) {
         while 1usize << self.powers.len() <= count {
             let last = &self.powers[self.powers.len() - 1];
             self.powers.push(last.times(last));
@@ -85,7 +85,7 @@ impl<'a> Steps<'a> {
     }
 
     /// Begins to carry a direction.
-    pub fn track(&self, direction: &[f64]) -> Track {
+    pub(super) fn track(&self, direction: &[f64]) -> Track {
         let direction: Vec<Interval> =
             direction.iter().map(|entry| Interval::point(*entry)).collect();
         Track {
@@ -100,7 +100,7 @@ impl<'a> Steps<'a> {
     }
 
     /// Carries a direction over the next step; [`reserve`](Self::reserve) has prepared for it.
-    pub fn advance(&self, track: &mut Track) -> StepBounds {
+    pub(super) fn advance(&self, track: &mut Track) -> StepBounds {
         let length = Interval::point(self.length);
         let curve = self.curvature.apply(&track.direction);
         // What the direction differs from a straight line by, is −τ (h − τ)/2 times the curve.
@@ -145,7 +145,7 @@ impl<'a> Steps<'a> {
 
 /// A direction on its way.
 #[derive(Clone, Debug)]
-pub struct Track {
+pub(super) struct Track {
     taken: usize,
     first: Vec<Interval>,
     direction: Vec<Interval>,
@@ -159,14 +159,14 @@ pub struct Track {
 
 impl Track {
     /// At least ℓ · x now.
-    pub fn value(&self) -> f64 {
+    pub(super) fn value(&self) -> f64 {
         plus_up(self.state_bound, self.added)
     }
 }
 
 /// Bounds on ℓ · x.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepBounds {
+pub(super) struct StepBounds {
     /// At every instant of the step, its ends included.
     pub during: f64,
     /// At its end.

@@ -7,7 +7,7 @@
 //!
 //! A [`Model`] is made from an automaton whose flows, guards and resets are formulas. [`explore()`]
 //! encloses its runs: affine flows by [support functions](affine), others by [Taylor models](taylor),
-//! and where guards may hold by [polytopes](polytope) in template directions that are cut, mapped and put
+//! and where guards may hold by [polytopes](Polytope) in template directions that are cut, mapped and put
 //! together. [`falsify()`] searches for a run that comes to forbidden states, and [`verify_formula()`] asks
 //! formulas over time of all runs. [`confirm()`] says whether what checks have found comes up. `docs/reachability.md`
 //! says what is guaranteed, and where not.
@@ -16,30 +16,30 @@
 //! `use pleach::verify::reach;`, rather than all of its names.
 
 pub mod affine;
-pub mod confirm;
-pub mod containment;
+mod confirm;
+mod containment;
 #[cfg(test)]
 mod exact;
-pub mod explore;
-pub mod exponential;
-pub mod falsify;
+mod explore;
+mod exponential;
+mod falsify;
 mod flow;
-pub mod model;
-pub mod polytope;
-pub mod question;
-pub mod region;
+mod model;
+mod polytope;
+mod question;
+mod region;
 pub mod rounding;
-pub mod search;
+mod search;
 mod series;
-pub mod set;
-pub mod settings;
+mod set;
+mod settings;
 mod signal;
 pub mod sparse;
 pub mod taylor;
 mod taylor_model;
-pub mod temporal;
-pub mod vector;
-pub mod zonotope;
+mod temporal;
+mod vector;
+mod zonotope;
 
 pub use affine::AffineFlow;
 pub use confirm::{Confirmed, Reachability, confirm};
@@ -55,7 +55,7 @@ pub use rounding::sum_up;
 pub use search::{Effort, Run, Starts, runs};
 pub use set::StateSet;
 pub use settings::{Directions, InvalidSetting, Settings};
-pub use sparse::{Span, SparseFlow};
+pub use sparse::{Along, InvalidEntry, Span, SparseFlow};
 pub use temporal::{RobustnessProof, TemporalAnswer, Violation, prove_formula, verify_formula};
 pub use vector::{IntervalMatrix, dot, dot_numbers};
 pub use zonotope::Zonotope;

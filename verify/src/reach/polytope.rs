@@ -74,7 +74,7 @@ impl Template {
     }
 
     /// Where this direction is.
-    pub fn position(&self, direction: &[f64]) -> Option<usize> {
+    pub(super) fn position(&self, direction: &[f64]) -> Option<usize> {
         self.directions.iter().position(|known| known == direction)
     }
 }
@@ -136,7 +136,7 @@ impl Polytope {
     }
 
     /// The smallest polytope of the template around this one and another.
-    pub fn join(&mut self, other: &Polytope) {
+    pub(super) fn join(&mut self, other: &Polytope) {
         for (bound, another) in self.bounds.iter_mut().zip(&other.bounds) {
             *bound = bound.max(*another);
         }
@@ -227,7 +227,7 @@ impl Polytope {
 }
 
 /// At least the largest d · x over a box; along an axis exactly that.
-pub fn over_box(direction: &[f64], sides: &[Interval]) -> f64 {
+pub(super) fn over_box(direction: &[f64], sides: &[Interval]) -> f64 {
     let mut entries = direction.iter().zip(sides).filter(|(entry, _)| **entry != 0.0);
     match (entries.next(), entries.next()) {
         (Some((1.0, side)), None) => side.upper(),

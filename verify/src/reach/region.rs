@@ -128,7 +128,7 @@ impl Conjunction {
 
     /// How far the set stays away from it at least: the largest of the bounds that its comparisons
     /// miss by; negative where none of them tells the two apart.
-    pub fn clearance(&self, polytope: &Polytope, variables: &[String]) -> f64 {
+    pub(super) fn clearance(&self, polytope: &Polytope, variables: &[String]) -> f64 {
         let Some(sides) = polytope.hull() else { return f64::INFINITY };
         let named = Named { names: variables, sides: &sides };
         let affine = self.half_spaces.iter().map(|half_space| {
@@ -199,7 +199,7 @@ impl HalfSpace {
     }
 
     /// What d · x is at most, for the states of a box that are in it.
-    pub fn bound_over(&self, sides: &[Interval]) -> f64 {
+    pub(super) fn bound_over(&self, sides: &[Interval]) -> f64 {
         (self.bound + dot(&self.spread, sides)).upper()
     }
 
@@ -213,7 +213,7 @@ impl HalfSpace {
 
     /// d · x ≤ b is the opposite of d · x > b: the half-space with the other side, closed.
     #[must_use]
-    pub fn opposite(&self) -> HalfSpace {
+    pub(super) fn opposite(&self) -> HalfSpace {
         HalfSpace {
             direction: self.direction.iter().map(|entry| -entry).collect(),
             spread: self.spread.clone(),

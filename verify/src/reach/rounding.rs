@@ -12,13 +12,13 @@
 use pleach_guards::Interval;
 
 /// Half the distance from 1 to the next number: a rounded result is off by at most this share of it.
-pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// More than what a product can be off by that is too small for all its digits.
-pub const UNDERFLOW: f64 = f64::MIN_POSITIVE;
+pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// At least a + b.
-pub fn plus_up(left: f64, right: f64) -> f64 {
+pub(super) fn plus_up(left: f64, right: f64) -> f64 {
     (Interval::point(left) + Interval::point(right)).upper()
 }
 
@@ -36,7 +36,7 @@ pub fn sum_up(terms: impl IntoIterator<Item = f64>) -> f64 {
 
 /// From the sum of the lower ends of `count` products to that of their upper ends, which were computed
 /// as `lower` and `upper`, while their magnitudes added up to `size`.
-pub fn enclosed_sum(lower: f64, upper: f64, size: f64, count: usize) -> Interval {
+pub(super) fn enclosed_sum(lower: f64, upper: f64, size: f64, count: usize) -> Interval {
     if count == 0 {
         return Interval::point(0.0);
     }

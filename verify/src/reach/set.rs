@@ -60,7 +60,7 @@ impl StateSet {
 
     /// What lies in this set and in a zonotope.
     #[must_use]
-    pub fn within(mut self, zonotope: Zonotope) -> Self {
+    pub(super) fn within(mut self, zonotope: Zonotope) -> Self {
         for (side, other) in self.hull.iter_mut().zip(zonotope.hull()) {
             *side = side.intersection(other).unwrap_or(*side);
         }
@@ -70,7 +70,7 @@ impl StateSet {
 
     /// What lies in this set and in a polytope; `None` if there is nothing.
     #[must_use]
-    pub fn cut_to(mut self, polytope: Polytope) -> Option<Self> {
+    pub(super) fn cut_to(mut self, polytope: Polytope) -> Option<Self> {
         for (side, other) in self.hull.iter_mut().zip(polytope.hull()?) {
             *side = side.intersection(other)?;
         }
@@ -90,7 +90,7 @@ impl StateSet {
     }
 
     /// Whether every point of a polytope is seen to be in this set.
-    pub fn contains_polytope(&self, other: &Polytope) -> bool {
+    pub(super) fn contains_polytope(&self, other: &Polytope) -> bool {
         let Some(sides) = other.hull() else { return true };
         self.holds_bounds(&sides, |direction| {
             other.bound(direction).unwrap_or_else(|| over_box(direction, &sides))
@@ -114,7 +114,7 @@ impl StateSet {
     /// A point of it; `draw` gives numbers from −1 to 1. `None` if none is found.
     ///
     /// A point that half-spaces cut off is drawn back towards one that they do not.
-    pub fn point(&self, draw: &mut impl FnMut() -> f64) -> Option<Vec<f64>> {
+    pub(super) fn point(&self, draw: &mut impl FnMut() -> f64) -> Option<Vec<f64>> {
         /// How often a point is drawn.
         const DRAWS: usize = 256;
         /// How often the way between two points is halved.

@@ -7,23 +7,23 @@ use pleach_guards::Interval;
 use super::rounding::{enclosed_sum, sum_up};
 
 /// From −`radius` to `radius`.
-pub fn around_zero(radius: f64) -> Interval {
+pub(super) fn around_zero(radius: f64) -> Interval {
     let radius = radius.abs();
     Interval::new(-radius, radius).unwrap_or(Interval::WHOLE)
 }
 
 /// The largest magnitude of a number in `interval`.
-pub fn magnitude(interval: Interval) -> f64 {
+pub(super) fn magnitude(interval: Interval) -> f64 {
     interval.lower().abs().max(interval.upper().abs())
 }
 
 /// At least how far any number of `interval` is from its midpoint.
-pub fn radius(interval: Interval) -> f64 {
+pub(super) fn radius(interval: Interval) -> f64 {
     magnitude(interval - Interval::point(interval.midpoint()))
 }
 
 /// Whether it is the number 0 alone.
-pub fn is_zero(interval: Interval) -> bool {
+pub(super) fn is_zero(interval: Interval) -> bool {
     interval.lower() == 0.0 && interval.upper() == 0.0
 }
 
@@ -122,7 +122,7 @@ impl IntervalMatrix {
 
     /// Rows and columns exchanged.
     #[must_use]
-    pub fn transposed(&self) -> Self {
+    pub(super) fn transposed(&self) -> Self {
         let mut transposed = IntervalMatrix::zero(self.columns, self.rows);
         for row in 0..self.rows {
             for column in 0..self.columns {
@@ -134,21 +134,21 @@ impl IntervalMatrix {
 
     /// Each entry changed.
     #[must_use]
-    pub fn map(&self, change: impl Fn(Interval) -> Interval) -> Self {
+    pub(super) fn map(&self, change: impl Fn(Interval) -> Interval) -> Self {
         let entries = self.entries.iter().map(|entry| change(*entry)).collect();
         IntervalMatrix { entries, ..*self }
     }
 
     /// The sum of two matrices of one shape.
     #[must_use]
-    pub fn plus(&self, other: &IntervalMatrix) -> Self {
+    pub(super) fn plus(&self, other: &IntervalMatrix) -> Self {
         let pairs = self.entries.iter().zip(&other.entries);
         IntervalMatrix { entries: pairs.map(|(a, b)| *a + *b).collect(), ..*self }
     }
 
     /// The product with a matrix that has as many rows as this one has columns.
     #[must_use]
-    pub fn times(&self, other: &IntervalMatrix) -> Self {
+    pub(super) fn times(&self, other: &IntervalMatrix) -> Self {
         let columns = other.transposed();
         let mut entries = Vec::with_capacity(self.rows * other.columns);
         for row in 0..self.rows {
@@ -163,7 +163,7 @@ impl IntervalMatrix {
     }
 
     /// The product with a vector of numbers.
-    pub fn apply_to_numbers(&self, vector: &[f64]) -> Vec<Interval> {
+    pub(super) fn apply_to_numbers(&self, vector: &[f64]) -> Vec<Interval> {
         (0..self.rows).map(|row| dot_numbers(self.row(row), vector)).collect()
     }
 

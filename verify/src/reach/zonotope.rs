@@ -82,7 +82,7 @@ impl Zonotope {
 
     /// Every M x + b for matrices M in `matrix` and offsets b in `offset`.
     #[must_use]
-    pub fn mapped(&self, matrix: &IntervalMatrix, offset: &[Interval]) -> Self {
+    pub(super) fn mapped(&self, matrix: &IntervalMatrix, offset: &[Interval]) -> Self {
         let center = matrix.apply_to_numbers(&self.center);
         let center: Vec<Interval> = center.iter().zip(offset).map(|(a, b)| *a + *b).collect();
         let generators: Vec<Vec<Interval>> =
@@ -99,14 +99,14 @@ impl Zonotope {
     }
 
     /// Adds a generator.
-    pub fn push(&mut self, generator: &[Interval]) {
+    pub(super) fn push(&mut self, generator: &[Interval]) {
         let radii: Vec<f64> = generator.iter().map(|entry| radius(*entry)).collect();
         self.widen(&radii);
         self.generators.push(generator.iter().map(Interval::midpoint).collect());
     }
 
     /// Adds a box with these half widths.
-    pub fn widen(&mut self, half_widths: &[f64]) {
+    pub(super) fn widen(&mut self, half_widths: &[f64]) {
         for (slack, half_width) in self.slack.iter_mut().zip(half_widths) {
             *slack = plus_up(*slack, *half_width);
         }
@@ -114,7 +114,7 @@ impl Zonotope {
 
     /// The Minkowski sum.
     #[must_use]
-    pub fn plus(&self, other: &Zonotope) -> Self {
+    pub(super) fn plus(&self, other: &Zonotope) -> Self {
         let centers = self.center.iter().zip(&other.center);
         let centers: Vec<Interval> =
             centers.map(|(a, b)| Interval::point(*a) + Interval::point(*b)).collect();

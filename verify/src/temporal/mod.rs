@@ -74,11 +74,11 @@
 //! times as many (Donzé, Ferrère and Maler 2013,
 //! [doi:10.1007/978-3-642-39799-8_19](https://doi.org/10.1007/978-3-642-39799-8_19)).
 
-pub mod formula;
-pub mod judgement;
+mod formula;
+mod judgement;
 mod pointwise;
 mod print;
-pub mod samples;
+mod samples;
 mod signal;
 mod sliding;
 mod until;

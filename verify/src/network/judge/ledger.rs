@@ -15,7 +15,7 @@ use crate::network::team;
 
 /// Roles, teams and tasks after the events so far.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ledger {
+pub(super) struct Ledger {
     /// The role of every robot.
     pub roles: Vec<Role>,
     /// The tasks that have been announced.
@@ -55,7 +55,7 @@ pub struct Ledger {
 
 /// What the mission is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub(super) enum Stage {
     /// No task is pursued.
     Idle,
     /// A leader is being elected.
@@ -83,7 +83,7 @@ impl Stage {
 
 impl Ledger {
     /// The ledger of a mission that begins: every robot is redundant.
-    pub fn new(robots: usize) -> Self {
+    pub(super) fn new(robots: usize) -> Self {
         Ledger {
             roles: vec![Role::Redundant; robots],
             announced: BTreeSet::new(),
@@ -105,13 +105,13 @@ impl Ledger {
     }
 
     /// The task that is pursued: the one announced that is neither serviced nor over.
-    pub fn task(&self) -> Option<usize> {
+    pub(super) fn task(&self) -> Option<usize> {
         let is_done = |task: &usize| self.serviced.contains_key(task) || self.closed.contains(task);
         self.announced.iter().copied().find(|task| !is_done(task))
     }
 
     /// What the mission is at.
-    pub fn stage(&self) -> Stage {
+    pub(super) fn stage(&self) -> Stage {
         match (self.task(), self.leader) {
             (None, _) => Stage::Idle,
             (Some(_), None) => Stage::Electing,
@@ -122,7 +122,7 @@ impl Ledger {
     }
 
     /// The active team 𝒜 (Algorithm 3).
-    pub fn active_team(&self) -> &[usize] {
+    pub(super) fn active_team(&self) -> &[usize] {
         match (self.stage(), &self.walk) {
             (Stage::Advancing, _) => &self.primary_team,
             (Stage::Shifting, Some(walk)) => walk.next_team(),
@@ -131,19 +131,19 @@ impl Ledger {
     }
 
     /// Whether the robot is of the primary team, or was until the task was serviced and may not know yet.
-    pub fn is_or_was_primary(&self, robot: usize) -> bool {
+    pub(super) fn is_or_was_primary(&self, robot: usize) -> bool {
         self.primary_team.contains(&robot) || self.dismissed.contains(&robot)
     }
 
     /// Whether the robot is of a primary team that calls for a recruit, or whose recruit comes: with the eager strategy
     /// it goes on meanwhile, and what it has begun before the call it ends.
-    pub fn is_of_calling_team(&self, robot: usize) -> bool {
+    pub(super) fn is_of_calling_team(&self, robot: usize) -> bool {
         matches!(self.stage(), Stage::Calling | Stage::Shifting)
             && self.primary_team.contains(&robot)
     }
 
     /// Whether a recruit has been called for, and no path for it has been told.
-    pub fn awaits_path(&self) -> bool {
+    pub(super) fn awaits_path(&self) -> bool {
         self.walk.is_none() && self.stage() == Stage::Calling
     }
 
@@ -152,7 +152,7 @@ impl Ledger {
     /// # Errors
     ///
     /// Why it cannot follow those before it.
-    pub fn enter(&mut self, event: &MissionEvent) -> Result<(), Dispute> {
+    pub(super) fn enter(&mut self, event: &MissionEvent) -> Result<(), Dispute> {
         let entered = self.enter_now(event);
         if let (Err(_), Some(mut outdated)) = (&entered, self.outdated.clone())
             && !is_told_by_access_point(event)
@@ -176,7 +176,7 @@ impl Ledger {
     }
 
     /// Everybody has heard by now that the task is taken back.
-    pub fn forget_outdated(&mut self) {
+    pub(super) fn forget_outdated(&mut self) {
         self.outdated = None;
     }
 
@@ -475,7 +475,7 @@ impl Ledger {
     }
 
     /// The ledger as it will be when the subgroup under way has arrived.
-    pub fn after_arrival(&self) -> Self {
+    pub(super) fn after_arrival(&self) -> Self {
         let mut after = self.clone();
         after.take_places();
         after

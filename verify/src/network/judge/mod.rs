@@ -55,18 +55,18 @@ pub(super) use clock::Clock;
 use conclusions::Conclusions;
 pub use fleets::JudgeOfFleets;
 use ground::Ground;
-pub use ledger::{Ledger, Stage};
+use ledger::{Ledger, Stage};
 use places::Places;
 pub use referee::{Referee, judged_faults};
-pub use safety::{Safety, relayed};
+pub use safety::Safety;
+pub(super) use safety::relayed;
 pub(super) use tasks::TaskClaims;
 use terms::Terms;
 use verdicts::{Trial, Tried};
-pub use walk::Walk;
 
 /// What is wrong with an entry of the record; the instant is added where it is known.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Dispute {
+pub(super) struct Dispute {
     /// The property that fails.
     pub property: Property,
     /// The robots concerned.
@@ -477,7 +477,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The same of why a task is given up in the period that ends with this snapshot, among these events.
-    pub fn account_of_task(
+    fn account_of_task(
         &self,
         task: usize,
         outcome: Outcome,
@@ -543,10 +543,5 @@ impl<'a> Judge<'a> {
     /// How near the mission has come to its bounds so far.
     pub fn extremes(&self) -> &Extremes {
         self.monitor.extremes()
-    }
-
-    /// What the events so far amount to.
-    pub fn ledger(&self) -> &Ledger {
-        &self.ledger
     }
 }

@@ -126,7 +126,7 @@ pub(super) fn all_are_present(snapshot: &Snapshot, clause: &str) -> Result<(), D
 /// # Errors
 ///
 /// The first robot that does not.
-pub fn relayed(seen: &Snapshot, limits: &Limits) -> Result<(), Violation> {
+pub(in crate::network) fn relayed(seen: &Snapshot, limits: &Limits) -> Result<(), Violation> {
     let residuals = link::residuals(&seen.routes, limits.rates());
     let bound = limits.least_residual();
     let is_sent_to = |robot| {

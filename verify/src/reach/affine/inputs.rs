@@ -25,7 +25,12 @@ const PIECES: (usize, usize) = (16, 256);
 impl AffineFlow {
     /// Every x(τ) that begins in `start`, for durations τ in `duration`, which are not negative.
     #[must_use]
-    pub fn after(&self, start: &Zonotope, duration: Interval, generators: usize) -> Zonotope {
+    pub(crate) fn after(
+        &self,
+        start: &Zonotope,
+        duration: Interval,
+        generators: usize,
+    ) -> Zonotope {
         let moved = exponential(&self.matrix.map(|entry| entry * duration));
         let nothing = vec![Interval::point(0.0); start.dimension()];
         let added = self.added(duration, generators);
