@@ -65,7 +65,7 @@ pub fn voronoi_half_planes(
 }
 
 /// The side of a bisector on which a robot stays: `clearance` from it, or where the robot is.
-pub fn own_side(bisector: HalfPlane, position: Point, clearance: f64) -> HalfPlane {
+pub(super) fn own_side(bisector: HalfPlane, position: Point, clearance: f64) -> HalfPlane {
     HalfPlane { offset: bisector.offset - clearance, ..bisector }.widened_to(position)
 }
 

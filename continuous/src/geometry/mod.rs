@@ -3,17 +3,17 @@
 //!
 //! | chapter | what it holds |
 //! | --- | --- |
-//! | [`workspace`] | the polygon with holes W that bounds the robots' world, validated |
+//! | [`Workspace`] | the polygon with holes W that bounds the robots' world, validated |
 //! | [`repair`] | workspaces from maps whose polygons touch |
 //! | [`free_space`] | W_f, the points that keep a clearance ρ from ∂W (Algorithm 6, repaired) |
-//! | [`geodesic`] | shortest paths in W_f (Definition 4.1), and the way to a fixed destination |
+//! | [`Geodesic`] | shortest paths in W_f (Definition 4.1), and the way to a fixed destination |
 //! | [`taut`] | paths pulled taut, each on its own side of the obstacles |
 //! | [`reentry`] | robots slightly outside W_f, and how they come back |
 //! | [`detour`] | shortest paths that also keep out of discs |
 //! | [`cell`] | convex collision-free cells (Definition 4.2, (17) and (18)) |
 //! | [`errors`] | cells of robots whose places and moves have errors |
-//! | [`neighbours`] | which points are within a distance of a place |
-//! | [`shape`] | discs, capsules and half-planes |
+//! | [`Neighbours`] | which points are within a distance of a place |
+//! | [`Disc`], [`Capsule`], [`HalfPlane`] | shapes |
 //!
 //! ```
 //! use pleach_continuous::Point;
@@ -47,18 +47,18 @@ mod edge_tree;
 mod erosion;
 pub mod errors;
 pub mod free_space;
-pub mod geodesic;
-pub mod neighbours;
+mod geodesic;
+mod neighbours;
 mod ranked;
 pub mod reentry;
 pub mod repair;
 mod search;
-pub mod segment;
-pub mod shape;
+mod segment;
+mod shape;
 pub mod taut;
 mod triangulation;
 mod visibility;
-pub mod workspace;
+mod workspace;
 
 pub use cell::{convex_region, voronoi_half_planes};
 pub use errors::Errors;
@@ -68,4 +68,4 @@ pub use neighbours::Neighbours;
 pub use repair::Repair;
 pub use segment::Segment;
 pub use shape::{Capsule, Disc, HalfPlane};
-pub use workspace::{Polygon, Workspace, WorkspaceError};
+pub use workspace::{NamedEdge, Polygon, Workspace, WorkspaceError};

@@ -71,7 +71,7 @@ impl Segment {
     }
 
     /// A pair of closest points: the first on this segment, the second on `other`.
-    pub fn closest(&self, other: &Segment) -> (Point, Point) {
+    pub(super) fn closest(&self, other: &Segment) -> (Point, Point) {
         if let Some(common) = self.crossing_point(other) {
             return (common, common);
         }
@@ -100,7 +100,7 @@ impl Segment {
     /// path as below it. Where a path runs exactly through a corner, it therefore crosses one of
     /// the two edges there if these lie on different sides of it, and both or none if they lie on
     /// the same side (a path that grazes a corner may count as crossing).
-    pub fn is_crossed_by(&self, path: &Segment) -> bool {
+    pub(super) fn is_crossed_by(&self, path: &Segment) -> bool {
         let starts_left = side(self.from, self.to, path.from) >= 0.0;
         let ends_left = side(self.from, self.to, path.to) >= 0.0;
         if starts_left == ends_left {
@@ -112,7 +112,7 @@ impl Segment {
     }
 
     /// Whether the two segments have a point in common. Exact.
-    pub fn meets(&self, other: &Segment) -> bool {
+    pub(super) fn meets(&self, other: &Segment) -> bool {
         let sides = |line: &Segment, cut: &Segment| {
             (side(line.from, line.to, cut.from), side(line.from, line.to, cut.to))
         };
@@ -174,7 +174,7 @@ fn opposite_or_on(one: f64, other: f64) -> bool {
 ///
 /// J. R. Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric
 /// predicates*, <https://doi.org/10.1007/PL00009321>.
-pub fn side(from: Point, to: Point, point: Point) -> f64 {
+pub(super) fn side(from: Point, to: Point, point: Point) -> f64 {
     let coord = |p: Point| robust::Coord { x: p.x, y: p.y };
     robust::orient2d(coord(from), coord(to), coord(point))
 }

@@ -27,7 +27,7 @@ impl Disc {
 
     /// Distance from the rim to the nearest point of `segment`; negative where the segment enters
     /// the disc.
-    pub fn gap(&self, segment: &Segment) -> f64 {
+    pub(super) fn gap(&self, segment: &Segment) -> f64 {
         segment.distance(self.center) - self.radius
     }
 
@@ -122,7 +122,7 @@ impl HalfPlane {
     }
 
     /// The smallest half-plane with the same border direction that contains this one and `point`.
-    pub fn widened_to(self, point: Point) -> HalfPlane {
+    pub(super) fn widened_to(self, point: Point) -> HalfPlane {
         HalfPlane { offset: self.offset.max(along(self.normal, point)), ..self }
     }
 }

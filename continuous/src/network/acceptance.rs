@@ -169,7 +169,7 @@ fn largest_load(
 ///
 /// Any number will do that can be added and compared: the load is a sum of `f64`, and a model
 /// checker takes whole numbers.
-pub fn worst_corner<N, Terms>(terms: [Terms; 2]) -> N
+pub(super) fn worst_corner<N, Terms>(terms: [Terms; 2]) -> N
 where
     N: Copy + PartialOrd + Add<Output = N> + Default,
     Terms: IntoIterator<Item = [N; 2]>,

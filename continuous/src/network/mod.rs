@@ -10,7 +10,7 @@
 //! 5. [`acceptance`]: the proof that the move keeps (5) at every instant.
 //!
 //! Views of the whole network exist for observers and as oracles of tests and say so:
-//! [`rates::residuals`], [`routing::central`] and [`routing::rounds`].
+//! [`routing::central`] and [`routing::rounds`].
 
 pub mod acceptance;
 pub mod motion;

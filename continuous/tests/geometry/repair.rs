@@ -1,6 +1,6 @@
 //! Maps whose polygons touch.
 
-use pleach_continuous::geometry::workspace::Polygon;
+use pleach_continuous::geometry::Polygon;
 use pleach_continuous::geometry::{FreeSpace, Repair, Workspace, WorkspaceError};
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;

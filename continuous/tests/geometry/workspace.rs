@@ -1,5 +1,5 @@
 use pleach_continuous::Point;
-use pleach_continuous::geometry::workspace::NamedEdge;
+use pleach_continuous::geometry::NamedEdge;
 use pleach_continuous::geometry::{FreeSpace, Polygon, Workspace, WorkspaceError};
 use proptest::prelude::*;
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_continuous::geometry::segment::Segment;
+use pleach_continuous::geometry::Segment;
 use pleach_continuous::geometry::{Destination, Disc, FreeSpace, Geodesic};
 use pleach_discrete::network::PostKind;
 

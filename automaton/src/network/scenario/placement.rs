@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use pleach_continuous::Point;
-use pleach_continuous::geometry::workspace::Polygon;
+use pleach_continuous::geometry::Polygon;
 use pleach_continuous::geometry::{Neighbours, Repair, Workspace, WorkspaceError};
 use pleach_continuous::network::LinkReliability;
 use pleach_continuous::network::rates::Receiver;

@@ -121,7 +121,7 @@ impl MotionProblem {
     /// The admitted part of the segment is an interval that starts at the position. Where it ends
     /// follows from the constraints in closed form; a few halvings then remove what rounding
     /// leaves outside.
-    pub fn shrink_to_feasible(&self, target: Point) -> Point {
+    pub(super) fn shrink_to_feasible(&self, target: Point) -> Point {
         if self.admits(&target) {
             return target;
         }
@@ -142,13 +142,13 @@ impl MotionProblem {
 }
 
 /// Whether a margin is that of a point inside, up to [`FEASIBILITY_TOLERANCE`].
-pub fn is_admitted(margin: f64) -> bool {
+pub(super) fn is_admitted(margin: f64) -> bool {
     margin >= -FEASIBILITY_TOLERANCE
 }
 
 /// The smallest of some margins; infinite if there are none. One that is not a number counts as
 /// broken, which `f64::min` would hide: then the answer is not a number either.
-pub fn smallest(margins: impl IntoIterator<Item = f64>) -> f64 {
+pub(super) fn smallest(margins: impl IntoIterator<Item = f64>) -> f64 {
     margins.into_iter().fold(f64::INFINITY, |least, margin| {
         if margin < least || margin.is_nan() { margin } else { least }
     })

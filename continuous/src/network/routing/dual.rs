@@ -27,7 +27,7 @@ pub fn dual_step(multiplier: f64, step: f64, residual: f64, reserve: f64) -> f64
 }
 
 /// The nearest multiplier in [0, [`MULTIPLIER_CAP`]]: [·]₊ of (14), capped.
-pub fn projected(multiplier: f64) -> f64 {
+pub(super) fn projected(multiplier: f64) -> f64 {
     multiplier.clamp(0.0, MULTIPLIER_CAP)
 }
 
