@@ -47,7 +47,6 @@ pub const USES: &[Use] = &[
     ("own_side", CELL, CELL, "Some(own_side(bisector, position, clearance))"),
     ("worst_corner", ACCEPTANCE, ACCEPTANCE, "worst_corner(ends(&own.axis).map(terms_from))"),
     ("is_admitted", MOTION, MOTION, "is_admitted(self.smallest_margin(point))"),
-    ("smallest", MOTION, MOTION, "smallest(lines.chain(circles))"),
     (
         "reliability",
         "continuous/src/network/reliability.rs",

@@ -89,7 +89,6 @@ pub mod guard;
 pub mod interval;
 pub mod linear;
 mod name;
-pub mod network;
 pub mod normal_form;
 mod operator;
 pub mod parse;

@@ -11,6 +11,7 @@ pub mod control;
 pub mod duty;
 pub mod faulty_node;
 pub mod fleets;
+mod guards;
 mod link;
 pub mod medium;
 pub mod member;

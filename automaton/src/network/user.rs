@@ -9,7 +9,6 @@ use pleach_continuous::Point;
 use pleach_discrete::Location as _;
 use pleach_discrete::network::{NodeId, REQUESTS, Request, RequestEvent};
 use pleach_guards::Guard;
-use pleach_guards::network::{control, service as guards};
 
 use super::act::{Act, acting};
 use super::beacon::{Bulletin, Notice};
@@ -23,6 +22,7 @@ use super::service::{Asked, Asking, Deserted, Informed, Preparing, Waiting};
 use super::shared::Shared;
 use super::site::Site;
 use crate::located::{Current, DataOf, Holds, Place as _};
+use crate::network::guards::{control, service as guards};
 use crate::node::{Input, Node};
 use crate::{Automaton, BuildError, Flow, Transfer};
 

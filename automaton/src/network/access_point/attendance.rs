@@ -6,10 +6,10 @@
 //! distributed systems this is a failure detector with leases.
 
 use pleach_discrete::network::{ATTENDANCE, Attendance, AttendanceEvent};
-use pleach_guards::network::attendance as guards;
 
 use crate::automaton::TransitionError;
 use crate::located::{Current, DataOf, Holds, Place as _};
+use crate::network::guards::attendance as guards;
 use crate::{Automaton, BuildError, Transfer};
 
 /// Control periods after which a robot that is not heard of is missed.

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::{ROUNDS, Round, RoundEvent};
-use pleach_guards::{Guard, network::control as guards};
+use pleach_guards::Guard;
 
 use crate::located::{Current, DataOf, Holds};
+use crate::network::guards::control as guards;
 use crate::{Automaton, BuildError, Flow, Transfer};
 
 use super::AccessPoint;

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{IdSet, NodeId, SERVICE, Service, ServiceEvent};
-use pleach_guards::{Guard, network::service as guards};
+use pleach_guards::Guard;
 
 use crate::located::{Current, DataOf, Holds};
+use crate::network::guards::service as guards;
 use crate::{Automaton, BuildError, Transfer};
 
 use super::attendance::Attendee;

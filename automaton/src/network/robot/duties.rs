@@ -10,10 +10,10 @@ use pleach_discrete::network::{
     Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Phase, Post, PostId, PostKind, Role,
 };
 use pleach_discrete::{Event as _, Location as _, Superstate};
-use pleach_guards::network::duty as guards;
 use pleach_guards::{EvaluationError, Guard};
 
 use crate::located::{Current, DataOf, Holds, Place as _};
+use crate::network::guards::duty as guards;
 use crate::{Automaton, BuildError, Jump, Transfer, TransitionError};
 
 use super::Robot;

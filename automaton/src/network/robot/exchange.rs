@@ -6,9 +6,9 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::{EXCHANGE, ExchangeEvent, ExchangeStage, NodeId, Offers};
-use pleach_guards::network::exchange as guards;
 
 use crate::located::{Current, DataOf, Holds};
+use crate::network::guards::exchange as guards;
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
 use super::Robot;

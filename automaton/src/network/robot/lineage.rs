@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use pleach_discrete::network::{ATTACHMENT, Anchor, Attachment, AttachmentEvent, Lineage};
-use pleach_guards::network::attachment as guards;
 
 use crate::located::{Current, Holds};
+use crate::network::guards::attachment as guards;
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
 use super::Robot;

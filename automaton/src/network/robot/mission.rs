@@ -10,9 +10,10 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::{Agreement, Election, MISSION, MissionStep, NoticeId, Phase};
-use pleach_guards::{Guard, network::mission as guards};
+use pleach_guards::Guard;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
+use crate::network::guards::mission as guards;
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
 use super::duties::Label;

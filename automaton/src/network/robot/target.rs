@@ -2,11 +2,11 @@
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{Activity, Anchor};
-use pleach_guards::network::target as guards;
 
 use crate::automaton::TransitionError;
 use crate::law::Laws;
 use crate::located::Place as _;
+use crate::network::guards::target as guards;
 
 use super::Robot;
 use crate::network::duty::{Duty, Hop};

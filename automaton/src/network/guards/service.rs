@@ -1,40 +1,40 @@
 //! The guards of the service of a user's tasks: of access points and of the user.
 
-use crate::{Guard, Predicate, proposition, variable};
+use pleach_guards::{Guard, Predicate, proposition, variable};
 
 fn named(name: &str, predicate: Predicate) -> Guard {
     Guard::new(name, predicate)
 }
 
 /// It hears of an election that it does not know.
-pub fn election_heard() -> Guard {
+pub(crate) fn election_heard() -> Guard {
     named("election heard", proposition("hears_election"))
 }
 
 /// It hears that a path Σ is announced, or that the primary team advances.
-pub fn progress_heard() -> Guard {
+pub(crate) fn progress_heard() -> Guard {
     named("progress heard", proposition("hears_progress"))
 }
 
 /// It hears that the task is serviced, or has been taken back.
-pub fn service_heard() -> Guard {
+pub(crate) fn service_heard() -> Guard {
     named("service heard", proposition("hears_service"))
 }
 
 /// It hears that the mission has ended, has nobody else to ask, and does not go on with other tasks.
-pub fn end_heard() -> Guard {
+pub(crate) fn end_heard() -> Guard {
     let goes_on = may_ask_others() | can_skip();
     let may_go_on = pursues() & proposition("hears_failure") & goes_on;
     named("end heard", proposition("hears_end") & !may_go_on)
 }
 
 /// The robots have given up the task that is pursued, there is nobody else to ask, and others may be serviced.
-pub fn gives_up() -> Guard {
+pub(crate) fn gives_up() -> Guard {
     named("gives up", may_skip() & is_abandoned())
 }
 
 /// So it is while the election is under way, or nobody bids in it, or it goes unanswered.
-pub fn gives_up_election() -> Guard {
+pub(crate) fn gives_up_election() -> Guard {
     named("gives up", may_skip() & (is_abandoned() | finds_no_bid() | finds_no_answer()))
 }
 
@@ -96,33 +96,33 @@ fn lacks_robots() -> Predicate {
 }
 
 /// Robots have gathered, and there is a task.
-pub fn announces_first() -> Guard {
+pub(crate) fn announces_first() -> Guard {
     first("announces", can_announce())
 }
 
 /// There is another task.
-pub fn announces_next() -> Guard {
+pub(crate) fn announces_next() -> Guard {
     next("announces", can_announce())
 }
 
 /// There is a task, and no robot is connected.
-pub fn no_robot_first() -> Guard {
+pub(crate) fn no_robot_first() -> Guard {
     first("no robot", lacks_robots())
 }
 
 /// There is another task, and no robot is connected.
-pub fn no_robot_next() -> Guard {
+pub(crate) fn no_robot_next() -> Guard {
     next("no robot", lacks_robots())
 }
 
 /// There is no task at all.
-pub fn nothing_to_service() -> Guard {
+pub(crate) fn nothing_to_service() -> Guard {
     first("all serviced", nothing_left())
 }
 
 /// There is no other task, and those that are serviced have been heard of: no robot that services one has
 /// stopped meanwhile.
-pub fn all_serviced() -> Guard {
+pub(crate) fn all_serviced() -> Guard {
     next("all serviced", nothing_left() & !proposition("awaits_services"))
 }
 
@@ -133,18 +133,18 @@ fn nothing_left() -> Predicate {
 
 /// The task that is pursued has been taken back, and no secondary team is on its way: each of its robots is at
 /// the post that it holds.
-pub fn withdraws() -> Guard {
+pub(crate) fn withdraws() -> Guard {
     let in_vain = proposition("pursues_withdrawn") & !proposition("path_announced");
     named("withdraws", pursues() & in_vain)
 }
 
 /// A task that is not pursued has been taken back, or has lasted as long as it should.
-pub fn closes() -> Guard {
+pub(crate) fn closes() -> Guard {
     next("closes", proposition("task_over"))
 }
 
 /// The leader election is over, no robot has bid, and there is nobody else to ask.
-pub fn no_bid() -> Guard {
+pub(crate) fn no_bid() -> Guard {
     named("no bid", pursues() & finds_no_bid() & !proposition("skips_tasks"))
 }
 
@@ -172,7 +172,7 @@ fn lacks_bid() -> Predicate {
 
 /// The election lasts longer than news can take, all who take part have been heard of, and so it has
 /// been each time.
-pub fn no_answer() -> Guard {
+pub(crate) fn no_answer() -> Guard {
     named("no answer", pursues() & finds_no_answer() & !proposition("skips_tasks"))
 }
 
@@ -183,14 +183,14 @@ fn finds_no_answer() -> Predicate {
 
 /// A robot that takes part in the elections for the task is gone, and others are left; or they have given the
 /// task up, and others take part now.
-pub fn announces_again() -> Guard {
+pub(crate) fn announces_again() -> Guard {
     let others = proposition("hears_failure") & proposition("has_newcomers") | may_ask_freed();
     let again = proposition("misses_robot") | others;
     named("announces again", pursues() & again & has_robots())
 }
 
 /// So it is while the election is under way, or nobody bids in it that could go, or it goes unanswered.
-pub fn elects_again() -> Guard {
+pub(crate) fn elects_again() -> Guard {
     let unanswered = goes_unanswered() & another_time();
     let in_vain = proposition("hears_failure") | lacks_bid();
     let others = in_vain & proposition("has_newcomers") | lacks_bid() & has_found_way();
@@ -199,7 +199,7 @@ pub fn elects_again() -> Guard {
 }
 
 /// All robots that took part are gone.
-pub fn no_robot_left() -> Guard {
+pub(crate) fn no_robot_left() -> Guard {
     let all_gone = !has_robots() & !proposition("may_return");
     named("no robot left", pursues() & proposition("misses_robot") & all_gone)
 }
@@ -223,18 +223,18 @@ fn pursues() -> Predicate {
 }
 
 /// The first control period begins.
-pub fn prepared() -> Guard {
+pub(crate) fn prepared() -> Guard {
     named("prepared", period_over())
 }
 
 /// A control period is over.
-pub fn another_period() -> Guard {
+pub(crate) fn another_period() -> Guard {
     named("period over", period_over())
 }
 
 /// A control period is over, and the first access point has been silent for longer than robots move
 /// without it.
-pub fn access_point_missed() -> Guard {
+pub(crate) fn access_point_missed() -> Guard {
     let missed = variable("silence").at_least(variable("patience"));
     named("access point missed", period_over() & missed)
 }
@@ -244,11 +244,11 @@ fn period_over() -> Predicate {
 }
 
 /// The first access point has announced a task.
-pub fn answer_heard() -> Guard {
+pub(crate) fn answer_heard() -> Guard {
     named("answer heard", proposition("hears_answer") & !proposition("hears_end"))
 }
 
 /// The newest notice says that the mission has ended.
-pub fn request_over() -> Guard {
+pub(crate) fn request_over() -> Guard {
     named("end heard", proposition("hears_end"))
 }

@@ -1,6 +1,6 @@
 //! The guards of the targets ψ (Algorithm 2): where a robot goes at a sample.
 
-use crate::{Predicate, proposition, variable};
+use pleach_guards::{Predicate, proposition, variable};
 
 /// A robot has a target only while it does not exchange duties, the mission goes on, and no robot
 /// is still attached to it that has not heard of its successor.
@@ -10,23 +10,23 @@ fn free_to_move(predicate: Predicate) -> Predicate {
 }
 
 /// A mover that cannot pass asks for way.
-pub fn gives_way() -> Predicate {
+pub(crate) fn gives_way() -> Predicate {
     free_to_move(proposition("asked_for_way"))
 }
 
 /// It is off the reference of its post, and no mover is near.
-pub fn returns() -> Predicate {
+pub(crate) fn returns() -> Predicate {
     free_to_move(proposition("off_post") & !proposition("near_mover"))
 }
 
 /// Its subgroup of Σ is the active team, and it is off the place ahead: eq. (25).
-pub fn shifts() -> Predicate {
+pub(crate) fn shifts() -> Predicate {
     free_to_move(proposition("in_active_subgroup") & proposition("off_place_ahead"))
 }
 
 /// Its subgroup of Σ is the active team, and it has yet to change over to another access point on its way to the
 /// place ahead.
-pub fn changes_over() -> Predicate {
+pub(crate) fn changes_over() -> Predicate {
     shifts() & proposition("before_changeover")
 }
 
@@ -37,18 +37,18 @@ fn team_goes_on() -> Predicate {
 }
 
 /// The primary team goes on: eq. (24).
-pub fn follows() -> Predicate {
+pub(crate) fn follows() -> Predicate {
     free_to_move(team_goes_on())
 }
 
 /// It has joined the primary team from afar, and has yet to change over to another access point on its way there.
-pub fn joins_over() -> Predicate {
+pub(crate) fn joins_over() -> Predicate {
     follows() & proposition("before_changeover")
 }
 
 /// The primary team goes on, the task is not within reach, and no redundant robot is attached to the leader:
 /// eq. (24).
-pub fn leads() -> Predicate {
+pub(crate) fn leads() -> Predicate {
     let away = variable("distance").more_than(variable("reach"));
     free_to_move(team_goes_on() & away & !proposition("bears_redundant"))
 }
