@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::fold::Operands;
 use crate::operator::raise;
-pub use crate::operator::{BinaryOperator, UnaryOperator};
+pub(crate) use crate::operator::{BinaryOperator, UnaryOperator};
 use crate::predicate::{Comparison, Predicate};
 use crate::table::Table;
 use crate::valuation::{EvaluationError, Valuation};

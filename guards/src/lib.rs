@@ -65,55 +65,56 @@
 //!
 //! # Where things are
 //!
-//! [`expression`], with its [tables](table), and [`predicate`] are the data, [`function`] holds what is not data, [`valuation`]
-//! is what they are evaluated on, [`guard`] gives a predicate its name, and [`crossing`] follows
+//! [`Expression`], with its [tables](Table), and [`Predicate`] are the data, [`NamedFunction`] holds what is not data,
+//! [`Valuation`] is what they are evaluated on, [`Guard`] gives a predicate its name, and [`Crossing`] follows
 //! margins over time. [`mod@print`] writes all of it as Unicode text and LaTeX, [`parse`] reads
 //! the text, and `serialization` (feature `serde`) takes it into files.
 //!
 //! Because guards are data, they can be analysed. [`range`] bounds expressions and decides
-//! predicates over whole boxes of states by [`interval`] arithmetic; [`linear`] reads off the
-//! coefficients of affine expressions, [`derivative`] differentiates, [`substitution`] renames
-//! variables and applies resets, and [`normal_form`] resolves negations and lists alternatives.
+//! predicates over whole boxes of states by [`interval`] arithmetic; a [`LinearForm`] holds the
+//! coefficients of an affine expression, [`Expression::derivative`] differentiates, a [`Substitution`] renames
+//! variables and applies resets, and [`Predicate::disjunctive_form`] resolves negations and lists alternatives.
 //! [`program`] compiles all of it for hot loops, and [`tape`] compiles lists of expressions together;
 //! [`sides`] makes smooth expressions of those with kinks;
 //! [`course`] follows predicates over time, with [`enclosure`]s of moving quantities.
 
 pub mod course;
-pub mod crossing;
-pub mod derivative;
+mod crossing;
+mod derivative;
 pub mod enclosure;
-pub mod expression;
+mod expression;
 mod fold;
-pub mod function;
-pub mod guard;
+mod function;
+mod guard;
 pub mod interval;
-pub mod linear;
+mod linear;
 mod name;
-pub mod normal_form;
+mod normal_form;
 mod operator;
 pub mod parse;
-pub mod predicate;
+mod predicate;
 pub mod print;
 pub mod program;
 pub mod range;
-pub mod ring;
+mod ring;
 #[cfg(feature = "serde")]
 pub mod serialization;
 pub mod sides;
-pub mod substitution;
-pub mod table;
+mod substitution;
+mod table;
 pub mod tape;
-pub mod valuation;
+mod valuation;
 
 pub use course::{Affine, Course, Tracked, Tracker};
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
 pub use enclosure::Enclosure;
-pub use expression::{Expression, constant, maximum, minimum, norm, piecewise, variable};
+pub use expression::{Choice, Expression, constant, maximum, minimum, norm, piecewise, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;
 pub use interval::{EmptyInterval, Interval};
-pub use linear::LinearForm;
+pub use linear::{Coefficient, LinearForm};
 pub use normal_form::NoDisjunctiveForm;
+pub use operator::{BinaryOperator, UnaryOperator};
 pub use parse::ParseError;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not, proposition};
 pub use program::{CompiledPredicate, Program};

@@ -9,8 +9,9 @@
 //! left, and at the very instant at which one does; resets where their transition is taken,
 //! invariants wherever a run may be. Of a choice, each part is evaluated under its condition only.
 
-use pleach_guards::expression::{BinaryOperator, Choice, UnaryOperator};
-use pleach_guards::{Comparison, Expression, Predicate, always, not};
+use pleach_guards::{
+    BinaryOperator, Choice, Comparison, Expression, Predicate, UnaryOperator, always, not,
+};
 
 use super::inquiry::Inquiry;
 use super::reachability::Reach;

@@ -4,10 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use pleach_discrete::{Event, Location, Urgency, first_mentions};
-use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{
-    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Sides,
-    Substitution, Tape, Tracker, Verdict,
+    BinaryOperator, CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program,
+    Sides, Substitution, Tape, Tracker, UnaryOperator, Verdict,
 };
 
 use super::kinks::Kinks;

@@ -2,8 +2,7 @@
 //! formula change, and at the kinks of its functions, if what decides moves along a line. Integration
 //! steps end there, for within a step a rate has to be smooth.
 
-use pleach_guards::expression::{BinaryOperator, UnaryOperator};
-use pleach_guards::{EvaluationError, Expression, Interpolation};
+use pleach_guards::{BinaryOperator, EvaluationError, Expression, Interpolation, UnaryOperator};
 
 /// The places of kinks or jumps on a line through the states: a sum of coordinates with coefficients.
 pub(crate) struct Kinks {

@@ -4,10 +4,9 @@
 
 use std::sync::Arc;
 
-use pleach_guards::expression::{Choice, UnaryOperator};
 use pleach_guards::{
-    Comparison, Expression, Interpolation, Predicate, Relation, Table, always, constant, never,
-    not, variable,
+    Choice, Comparison, Expression, Interpolation, Predicate, Relation, Table, UnaryOperator,
+    always, constant, never, not, variable,
 };
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;

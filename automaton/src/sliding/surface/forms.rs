@@ -1,7 +1,9 @@
 //! Comparisons and expressions as surfaces need them: margins, parts, and sums without what is nothing.
 
-use pleach_guards::expression::{BinaryOperator, UnaryOperator};
-use pleach_guards::{Comparison, Expression, Predicate, Relation, Substitution, constant};
+use pleach_guards::{
+    BinaryOperator, Comparison, Expression, Predicate, Relation, Substitution, UnaryOperator,
+    constant,
+};
 
 /// Coefficients of two comparisons that differ by rounding are the same.
 const ROUNDING: f64 = 1e-12;

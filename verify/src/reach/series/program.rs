@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pleach_guards::expression::{BinaryOperator, Expression, UnaryOperator};
+use pleach_guards::{BinaryOperator, Expression, UnaryOperator};
 
 /// What computes a series from earlier ones, which are given by number.
 #[derive(Clone, Copy, Debug, PartialEq)]
