@@ -4,7 +4,7 @@
 //! [`TransitionTable`](pleach_discrete::TransitionTable), and its guards are
 //! [predicates as data](pleach_guards). It can be
 //!
-//! * **run**: an automaton over [coordinates](mod@coordinates), or a [`composition`] of several,
+//! * **run**: an automaton over [coordinates](Coordinates), or a [`composition`] of several,
 //!   runs as it is and yields a [`Trajectory`]; any other [`System`] runs on the same [`Executor`].
 //!   The [executor's page](executor) and `docs/semantics.md` define what a run is;
 //! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG, LaTeX and tables from the automaton itself,
@@ -18,18 +18,18 @@
 //! behind the feature `network`, which is on by default; without it the framework needs neither
 //! geometry nor a solver.
 
-pub mod automaton;
-pub mod builder;
+mod automaton;
+mod builder;
 mod chance;
 pub mod check;
 pub mod composition;
-pub mod coordinates;
+mod coordinates;
 pub mod coverage;
 pub mod decision;
 pub mod diagram;
-pub mod edge;
+mod edge;
 pub mod executor;
-pub mod flow;
+mod flow;
 pub mod law;
 mod lists;
 pub mod located;
@@ -38,19 +38,21 @@ pub mod named;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod node;
-pub mod observed;
+mod observed;
 mod outline;
 mod parallel;
-pub mod reset;
+mod reset;
 mod signals;
 pub mod sliding;
 mod sweep;
-pub mod time;
-pub mod trace;
+mod time;
+mod trace;
 pub mod trajectory;
 pub mod zeno;
 
-pub use automaton::{Automaton, Jump, Mode, ParameterError, Step, Transition, TransitionError};
+pub use automaton::{
+    Automaton, InvariantError, Jump, Mode, ParameterError, Step, Transition, TransitionError,
+};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{
@@ -59,7 +61,7 @@ pub use composition::{
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
-pub use edge::{Edge, from, from_any};
+pub use edge::{Arrow, Departure, Edge, Trigger, from, from_any};
 pub use executor::{
     Ending, Executor, InvalidLimit, LastJump, Limit, Observer, Reason, Round, Sliding, System,
 };

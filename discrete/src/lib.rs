@@ -28,11 +28,11 @@
 //! assert_eq!(refusal.to_string(), "no transition leaves location `off` on event `too warm`");
 //! ```
 
-pub mod location;
+mod location;
 pub mod network;
-pub mod superstate;
-pub mod table;
-pub mod urgency;
+mod superstate;
+mod table;
+mod urgency;
 pub mod vocabulary;
 
 pub use location::{Event, Location};

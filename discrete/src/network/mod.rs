@@ -11,13 +11,13 @@ pub mod consent;
 pub mod control;
 pub mod election;
 pub mod exchange;
-pub mod id_set;
+mod id_set;
 pub mod lineage;
 pub mod offers;
 pub mod path;
 pub mod post;
 pub mod reservation;
-pub mod role;
+mod role;
 #[cfg(feature = "serde")]
 mod serialization;
 pub mod service;

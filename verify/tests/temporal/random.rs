@@ -4,7 +4,7 @@
 //! whole values; bounds of formulas are whole too. Then every robustness bends only at multiples
 //! of ½ s and is a multiple of ½ there, however deep the formula.
 
-use pleach_automaton::time::HybridTime;
+use pleach_automaton::HybridTime;
 use pleach_guards::{Predicate, variable};
 use pleach_verify::temporal::{Formula, Window, always, eventually, not, within};
 use proptest::prelude::*;
