@@ -13,7 +13,7 @@
 //!
 //! **Nothing is lost without a word.** The [`Account`] says how much floor the map has, and how much of it the plan; a
 //! loss above what is accepted is an error. Of floors that fall into pieces the largest one is taken. [`Plan::notes`]
-//! say what was recognised and what was left out, and [`gaps`] where passages are too narrow for robots.
+//! say what was recognised and what was left out, and [`skeleton`] where passages are too narrow for robots.
 //!
 //! A map of cells is traced along their sides, and corners are taken out within a tolerance, such that the outline stays
 //! in free cells, and what robots get through stays open. Other plans keep their corners; curves become chords within
@@ -25,7 +25,7 @@ mod cells;
 #[cfg(feature = "dxf")]
 mod dxf;
 mod features;
-pub mod gaps;
+mod gaps;
 mod geojson;
 mod grid;
 mod image;

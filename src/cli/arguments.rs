@@ -165,7 +165,7 @@ pub struct RunArguments {
 
 impl RunArguments {
     /// How many missions run at once.
-    pub fn jobs(&self) -> usize {
+    pub(super) fn jobs(&self) -> usize {
         let processors = || thread::available_parallelism().map_or(1, |count| count.get());
         self.jobs.map_or_else(processors, usize::from)
     }

@@ -29,7 +29,7 @@ impl FaultArguments {
     ///
     /// # Errors
     /// A robot is to stop that is not in the scenario.
-    pub fn storm(&self, scenario: &ValidScenario) -> Result<Option<Storm>, Failure> {
+    pub(super) fn storm(&self, scenario: &ValidScenario) -> Result<Option<Storm>, Failure> {
         if self.loss.0 == 0.0 && self.stop.is_empty() {
             return Ok(None);
         }

@@ -41,7 +41,7 @@ pub struct Finished {
 }
 
 /// Runs a mission. Files that cannot be written are told before it begins.
-pub fn run(
+pub(super) fn run(
     planned: &Planned,
     outputs: &Outputs,
     progress: &mut Progress,

@@ -2,7 +2,7 @@
 
 #![warn(clippy::print_stdout, clippy::print_stderr)] // they panic when the stream is closed: see `output`
 
-pub mod arguments;
+mod arguments;
 mod batch;
 mod check;
 mod diagram;
@@ -19,14 +19,14 @@ mod page;
 pub mod plan;
 pub mod progress;
 mod reach;
-pub mod record;
+mod record;
 mod remarks;
 pub mod run;
-pub mod source;
+mod source;
 pub mod status;
 mod sweep;
 mod table;
-pub mod terminal;
+mod terminal;
 
 pub use arguments::{Arguments, Command};
 

@@ -28,7 +28,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// A new file, or for `-` the standard output.
-pub fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
+pub(super) fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
     match source::is_standard(path) {
         true => Ok(Box::new(standard())),
         false => Ok(Box::new(create_file(path)?)),
@@ -43,13 +43,13 @@ fn create_file(path: &Path) -> Result<BufWriter<Named<File>>, Failure> {
 }
 
 /// A folder, created if it is missing: one that cannot be written is told before a run, not after.
-pub fn create_folder(path: &Path) -> Result<(), Failure> {
+pub(super) fn create_folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })
 }
 
 /// Refuses outputs that would take the place of an input or of each other. Folders and devices hold
 /// many.
-pub fn check_places<'a>(
+pub(super) fn check_places<'a>(
     inputs: impl IntoIterator<Item = &'a PathBuf>,
     outputs: impl IntoIterator<Item = &'a PathBuf>,
 ) -> Result<(), Failure> {
@@ -75,7 +75,7 @@ fn place_of(path: &Path) -> PathBuf {
 
 /// Whether a file can be written, or for `-` the standard output: told before what takes long. A file that is there
 /// stays what it is, and one that is not there is not left behind.
-pub fn check(path: &Path) -> Result<(), Failure> {
+pub(super) fn check(path: &Path) -> Result<(), Failure> {
     if source::is_standard(path) {
         return Ok(());
     }
@@ -94,7 +94,7 @@ fn standard() -> Named<io::StdoutLock<'static>> {
 }
 
 /// An output whose errors say which it is.
-pub struct Named<W> {
+pub(super) struct Named<W> {
     name: String,
     output: W,
 }

@@ -15,7 +15,11 @@ use pleach::verify::network::storm::Storm;
 const MOST_RUNS: usize = 100_000;
 
 /// How many runs a call asks for; an error if there are too many.
-pub fn count_runs(scenarios: usize, sweeps: &[Sweep], repeats: usize) -> Result<usize, Failure> {
+pub(super) fn count_runs(
+    scenarios: usize,
+    sweeps: &[Sweep],
+    repeats: usize,
+) -> Result<usize, Failure> {
     let count = scenarios.saturating_mul(Sweep::count(sweeps)).saturating_mul(repeats);
     match count > MOST_RUNS {
         true => Err(Failure::TooManyRuns { count, most: MOST_RUNS }),
@@ -100,7 +104,7 @@ impl Planned {
     }
 
     /// A name for the files of this run, one of `count`.
-    pub fn file_name(&self, count: usize) -> String {
+    pub(super) fn file_name(&self, count: usize) -> String {
         let digits = count.to_string().len();
         match count {
             1 => self.scenario.name.clone(),

@@ -40,7 +40,7 @@ impl Progress {
     }
 
     /// Clears the line that says where the mission stands.
-    pub fn finish(&self) {
+    pub(super) fn finish(&self) {
         if let Display::Live(bar) = &self.display {
             bar.finish_and_clear();
         }

@@ -84,7 +84,7 @@ const COLUMNS: ([&str; 3], [&str; 17]) = (
 
 impl Record {
     /// The record of a run that ended by itself.
-    pub fn of(run: &Planned, summary: &Summary, completed: &Completed) -> Self {
+    pub(super) fn of(run: &Planned, summary: &Summary, completed: &Completed) -> Self {
         let end = &completed.end;
         let status = Status::from(end.outcome);
         let LinkCount { links, through_walls } = summary.links().last();
@@ -113,7 +113,7 @@ impl Record {
     }
 
     /// The record of a run that the program could not do.
-    pub fn failed(run: &Planned, reason: String) -> Self {
+    pub(super) fn failed(run: &Planned, reason: String) -> Self {
         let set =
             |setting: &pleach::scenario_file::Setting| (setting.key(), setting.value().into());
         Self {
@@ -167,7 +167,7 @@ impl Record {
 }
 
 /// Writes the records as CSV, with a header and a column for each key that was set.
-pub fn write_csv(records: &[Record], output: impl Write) -> io::Result<()> {
+pub(super) fn write_csv(records: &[Record], output: impl Write) -> io::Result<()> {
     let keys: Vec<&str> = records
         .first()
         .map_or_else(Vec::new, |first| first.set.iter().map(|(key, _)| &**key).collect());
@@ -183,7 +183,7 @@ pub fn write_csv(records: &[Record], output: impl Write) -> io::Result<()> {
 }
 
 /// Writes the records as a JSON array of objects.
-pub fn write_json(records: &[Record], mut output: impl Write) -> io::Result<()> {
+pub(super) fn write_json(records: &[Record], mut output: impl Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut output, records)?;
     writeln!(output)?;
     output.flush()

@@ -17,7 +17,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Runs the missions that the arguments ask for.
-pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
+pub(super) fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     if arguments.pdf && !cfg!(feature = "pdf") {
         return Err(Failure::Without { what: "--pdf", feature: "pdf" });
     }

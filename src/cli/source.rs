@@ -8,15 +8,15 @@ use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 /// The name that stands for standard input or output.
-pub const STANDARD: &str = "-";
+pub(super) const STANDARD: &str = "-";
 
 /// Whether a path stands for standard input or output.
-pub fn is_standard(path: &Path) -> bool {
+pub(super) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == STANDARD
 }
 
 /// What `path` names, to be read: a file, or for `-` the standard input.
-pub fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
+pub(super) fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     match is_standard(path) {
         true => Ok(Box::new(io::stdin().lock())),
         false => Ok(Box::new(BufReader::new(File::open(path)?))),
@@ -25,7 +25,7 @@ pub fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
 
 /// The text of a scenario, and what messages call it.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub(super) struct Source {
     /// Its path, or `<stdin>`.
     pub name: PathBuf,
     text: String,
@@ -34,7 +34,7 @@ pub struct Source {
 impl Source {
     /// The sources that the paths name: `-` the standard input, a folder its TOML files in order
     /// of their names. Beside them, those that cannot be read.
-    pub fn all(paths: &[PathBuf]) -> Result<(Vec<Self>, Vec<ScenarioError>), Failure> {
+    pub(super) fn all(paths: &[PathBuf]) -> Result<(Vec<Self>, Vec<ScenarioError>), Failure> {
         let (mut sources, mut unreadable) = (Vec::new(), Vec::new());
         for path in paths {
             let found = if is_standard(path) {
@@ -71,7 +71,7 @@ impl Source {
     }
 
     /// The scenario with these settings; if there are `tasks`, with these in the place of its own.
-    pub fn parse(
+    pub(super) fn parse(
         &self,
         settings: &[Setting],
         tasks: Option<&[ListedTask]>,

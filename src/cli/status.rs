@@ -41,7 +41,7 @@ impl From<Outcome> for Status {
 
 impl Status {
     /// How bad it is: of several runs the worst one decides.
-    pub fn severity(self) -> u8 {
+    pub(super) fn severity(self) -> u8 {
         match self {
             Status::Done => 0,
             Status::Unserviced => 1,
@@ -168,7 +168,7 @@ fn one_per_line(errors: &[ScenarioError]) -> String {
 
 impl Failure {
     /// The exit status that tells this failure.
-    pub fn status(&self) -> Status {
+    pub(super) fn status(&self) -> Status {
         match self {
             Failure::Scenario(_)
             | Failure::Scenarios(_)

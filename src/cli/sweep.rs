@@ -29,12 +29,12 @@ impl FromStr for Sweep {
 
 impl Sweep {
     /// How many combinations there are of a value of each sweep.
-    pub fn count(sweeps: &[Sweep]) -> usize {
+    pub(super) fn count(sweeps: &[Sweep]) -> usize {
         sweeps.iter().fold(1, |count, sweep| count.saturating_mul(sweep.settings.len()))
     }
 
     /// Every combination of a value of each sweep, the values of the last one changing first.
-    pub fn combinations(sweeps: &[Sweep]) -> Vec<Vec<Setting>> {
+    pub(super) fn combinations(sweeps: &[Sweep]) -> Vec<Vec<Setting>> {
         sweeps.iter().fold(vec![Vec::new()], |combinations, sweep| {
             let extended = |combination: &Vec<Setting>, setting: &Setting| {
                 combination.iter().chain([setting]).cloned().collect()

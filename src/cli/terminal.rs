@@ -3,18 +3,18 @@
 use console::{Term, measure_text_width};
 
 /// Whether lines may be rewritten on the error output: it is a terminal, and not a dumb one.
-pub fn is_lively() -> bool {
+pub(super) fn is_lively() -> bool {
     let is_dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb" || name.is_empty());
     Term::stderr().is_term() && !is_dumb
 }
 
 /// Columns of the terminal at the standard output, if one is there.
-pub fn width() -> Option<usize> {
+pub(super) fn width() -> Option<usize> {
     columns(&Term::stdout())
 }
 
 /// Columns of the terminal at the error output, if one is there.
-pub fn error_width() -> Option<usize> {
+pub(super) fn error_width() -> Option<usize> {
     columns(&Term::stderr())
 }
 
@@ -23,12 +23,12 @@ fn columns(terminal: &Term) -> Option<usize> {
 }
 
 /// Where the second column of a summary and of a story begins.
-pub const SUMMARY_INDENT: usize = 22;
-pub const STORY_INDENT: usize = 11;
+pub(super) const SUMMARY_INDENT: usize = 22;
+pub(super) const STORY_INDENT: usize = 11;
 
 /// The lines of a text, those that are too long for `width` columns broken between words. What is
 /// left of a line begins at column `indent`, or further left in a narrow terminal.
-pub fn wrapped(text: &str, width: Option<usize>, indent: usize) -> String {
+pub(super) fn wrapped(text: &str, width: Option<usize>, indent: usize) -> String {
     let Some(width) = width.filter(|&width| width > 0) else { return text.to_owned() };
     let indent = indent.min(width / 4);
     text.split_inclusive('\n').map(|line| wrapped_line(line, width, indent)).collect()
@@ -51,7 +51,7 @@ fn wrapped_line(line: &str, width: usize, indent: usize) -> String {
 }
 
 /// The text cut to `width` columns, with an ellipsis in place of what is missing.
-pub fn cut(text: &str, width: Option<usize>) -> String {
+pub(super) fn cut(text: &str, width: Option<usize>) -> String {
     match width {
         Some(width) => console::truncate_str(text, width, "…").into_owned(),
         None => text.to_owned(),

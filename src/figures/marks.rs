@@ -13,7 +13,7 @@ use crate::story::Moment;
 
 /// What a node is drawn as, after the captions of Figs. 8 to 10 and 14.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Mark {
+pub(crate) enum Mark {
     /// A fixed sink of information: a blue rhombus.
     AccessPoint,
     /// The head of the primary team: a red star.
@@ -34,7 +34,7 @@ pub enum Mark {
 
 impl Mark {
     /// Every mark, in the order of the legend.
-    pub const ALL: [Mark; 8] = [
+    pub(crate) const ALL: [Mark; 8] = [
         Mark::AccessPoint,
         Mark::Leader,
         Mark::Member,
@@ -48,7 +48,7 @@ impl Mark {
     /// The mark of a robot: its role decides, and a plain node shows whether it belongs to the
     /// primary team.
     #[must_use]
-    pub fn of(snapshot: &Snapshot, robot: usize) -> Mark {
+    pub(crate) fn of(snapshot: &Snapshot, robot: usize) -> Mark {
         match snapshot.roles.get(robot) {
             Some(Role::Leader) => Mark::Leader,
             Some(Role::Recruit) => Mark::Recruit,
@@ -62,7 +62,7 @@ impl Mark {
 
     /// What the legend says.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(super) const fn name(self) -> &'static str {
         match self {
             Mark::AccessPoint => "access point",
             Mark::Leader => "leader",
@@ -77,7 +77,7 @@ impl Mark {
 
     /// The colour of its inside.
     #[must_use]
-    pub const fn colour(self) -> &'static str {
+    pub(crate) const fn colour(self) -> &'static str {
         match self {
             Mark::AccessPoint => palette::ACCESS_POINT,
             Mark::Leader => palette::LEADER,
@@ -92,7 +92,7 @@ impl Mark {
 
     /// Its name in style sheets and in data.
     #[must_use]
-    pub const fn key(self) -> &'static str {
+    pub(crate) const fn key(self) -> &'static str {
         match self {
             Mark::AccessPoint => "access-point",
             Mark::Leader => "leader",

@@ -10,7 +10,7 @@
 //! | --- | --- |
 //! | communication link | green, thickness ∝ T·R |
 //! | edge of the tree | red on its link, thickness ∝ T·R |
-//! | node | the [`Mark`] of its role, with its number |
+//! | node | the mark of its role, with its number |
 //! | member of the active team | a ring around the mark |
 //! | task | blue cross; in a ring when serviced, faint until announced |
 //! | disc of radius ρ | to scale around the mark, where it is large enough to be seen |
@@ -34,12 +34,11 @@ mod spacing;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use marks::TaskState;
+pub(crate) use marks::{Mark, TaskState};
 pub(crate) use screen::{link_data, mark_data, moment_data};
 pub(crate) use spacing::Walls;
 
 pub use album::{ANIMATION, Album};
 pub use canvas::quantity;
-pub use marks::Mark;
 pub use plan::Plan;
 pub use scene::Scene;

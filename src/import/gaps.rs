@@ -5,7 +5,7 @@ use crate::continuous::geometry::{Segment, Workspace};
 
 /// A passage between two walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
+pub(super) struct Gap {
     /// How far the walls are apart.
     pub width: f64,
     /// The middle of the passage.
@@ -25,7 +25,7 @@ const TOUCHING: f64 = 1e-3;
 ///
 /// Two corners or sides are the ends of a passage if the way from one to the other along the walls
 /// is much longer than straight across the floor.
-pub fn narrower_than(workspace: &Workspace, width: f64) -> Vec<Gap> {
+pub(super) fn narrower_than(workspace: &Workspace, width: f64) -> Vec<Gap> {
     let sides = Side::all(workspace);
     let mut gaps: Vec<Gap> =
         sides.iter().filter_map(|side| narrowest_at(side, &sides, workspace, width)).collect();
