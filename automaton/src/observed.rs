@@ -22,8 +22,8 @@ pub trait Observed: Valuation {
 }
 
 /// Implements [`Observed`] and [`Valuation`] for a state: each quantity and each proposition with
-/// its name, its documentation, and the expression that measures it. The glossary is a constant
-/// with the name and the documentation of each.
+/// its name, its documentation, and the expression that measures it. The glossary, which may be left out, is a
+/// constant with the name and the documentation of each.
 ///
 /// ```
 /// use pleach_automaton::{Observed, observed};
@@ -61,6 +61,17 @@ macro_rules! observed {
             $((stringify!($name), concat!($($text),+)),)*
         ];
 
+        $crate::observed! {
+            impl Observed for $state as $this;
+            quantities { $($(#[doc = $measure])+ $quantity: $number,)* }
+            propositions { $($(#[doc = $text])+ $name: $holds,)* }
+        }
+    };
+    (
+        impl Observed for $state:ident as $this:ident;
+        quantities { $($(#[doc = $measure:literal])+ $quantity:ident: $number:expr,)* }
+        propositions { $($(#[doc = $text:literal])+ $name:ident: $holds:expr,)* }
+    ) => {
         const _: () = {
             #[allow(non_camel_case_types, dead_code)]
             enum Quantity { $($quantity,)* }

@@ -96,19 +96,19 @@ pub struct Announcement {
 
 impl Announcement {
     /// The position of this task, or of one that has been serviced before.
-    pub fn position_of(&self, task: usize) -> Option<Point> {
+    pub(super) fn position_of(&self, task: usize) -> Option<Point> {
         if task == self.task { Some(self.position) } else { self.before.get(task).copied() }
     }
 }
 
 /// An announcement with the identity of the notice that made it.
-pub type Announced = (NoticeId, Shared<Announcement>);
+pub(super) type Announced = (NoticeId, Shared<Announcement>);
 
 /// A call for a recruit with a way over the tree to the caller.
-pub type CallRoute = (NoticeId, Shared<Vec<Hop>>);
+pub(super) type CallRoute = (NoticeId, Shared<Vec<Hop>>);
 
 /// A notice on the mission with its identity.
-pub type Bulletin = bulletin::Bulletin<Shared<Notice>>;
+pub(super) type Bulletin = bulletin::Bulletin<Shared<Notice>>;
 
 /// What the primary team knows of itself, passed from the leader back to p₁.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -266,7 +266,7 @@ impl Beacon {
     }
 
     /// The task that is serviced from the post of the sender.
-    pub fn task(&self) -> Option<usize> {
+    pub(super) fn task(&self) -> Option<usize> {
         self.duty.as_ref()?.post()?.task
     }
 
@@ -286,7 +286,7 @@ impl Beacon {
 
     /// Whether the same sender surely sent this before `other`: it had received, or offered, less.
     /// A medium may deliver copies late.
-    pub fn is_older_than(&self, other: &Beacon) -> bool {
+    pub(super) fn is_older_than(&self, other: &Beacon) -> bool {
         other.bulletin.id().is_newer_than(self.bulletin.id())
             || self.offers_made < other.offers_made
     }
@@ -295,7 +295,7 @@ impl Beacon {
 /// What a node tells those nearer to an access point of the robots beyond it, collected from their
 /// beacons.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Reports {
+pub(super) struct Reports {
     /// The robots of its branch of the tree.
     pub below: IdSet,
     /// Robots that are heard there and know no way to an access point.
@@ -307,7 +307,13 @@ pub struct Reports {
 impl Reports {
     /// Takes in the beacon of a robot that node `own` hears, and whose post is attached to that node's or
     /// is not. Robots that know no way count if others hear of this node: if it `is_linked` to one of the tree.
-    pub fn take_in(&mut self, beacon: &Beacon, is_child: bool, own: NodeId, is_linked: bool) {
+    pub(super) fn take_in(
+        &mut self,
+        beacon: &Beacon,
+        is_child: bool,
+        own: NodeId,
+        is_linked: bool,
+    ) {
         if is_child {
             self.take_in_branch(beacon);
         } else if beacon.parent == Some(own) {
@@ -322,7 +328,7 @@ impl Reports {
     }
 
     /// Takes in all that the sender reports.
-    pub fn take_in_branch(&mut self, beacon: &Beacon) {
+    pub(super) fn take_in_branch(&mut self, beacon: &Beacon) {
         self.below.merge(&beacon.below);
         self.strays.merge(&beacon.strays);
         self.serves.merge(&beacon.serves);
@@ -332,7 +338,7 @@ impl Reports {
 /// The beacon that a node sent last. As long as its public state does not change, a node sends the
 /// very same beacon again, and receivers need not read it.
 #[derive(Clone, Debug, Default)]
-pub struct LastBeacon {
+pub(super) struct LastBeacon {
     last: Option<Arc<Beacon>>,
     /// In how many rounds of this period it has been told, with what goes beside it, as it is now.
     told: usize,
@@ -340,12 +346,12 @@ pub struct LastBeacon {
 
 impl LastBeacon {
     /// The beacon sent last, if any.
-    pub fn get(&self) -> Option<Arc<Beacon>> {
+    pub(super) fn get(&self) -> Option<Arc<Beacon>> {
         self.last.clone()
     }
 
     /// The beacon to send now, and whether it differs from the last one: then it is told anew.
-    pub fn replace_by(&mut self, now: Beacon) -> (Arc<Beacon>, bool) {
+    pub(super) fn replace_by(&mut self, now: Beacon) -> (Arc<Beacon>, bool) {
         match &self.last {
             Some(last) if **last == now => (Arc::clone(last), false),
             _ => {

@@ -51,7 +51,7 @@ pub struct KernelTimes {
 
 impl KernelTimes {
     /// What two networks have spent together.
-    pub(super) fn and(self, other: Self) -> Self {
+    pub fn and(self, other: Self) -> Self {
         KernelTimes {
             coordination: self.coordination + other.coordination,
             routing: self.routing + other.routing,

@@ -134,7 +134,7 @@ pub struct Shifting {
 
 impl Duty {
     /// What the robot holds, if it holds a post.
-    pub const fn held(&self) -> Option<&Held> {
+    pub(super) const fn held(&self) -> Option<&Held> {
         match self {
             Duty::Standby(Standby(held))
             | Duty::Relay(Relay(held))
@@ -184,7 +184,7 @@ impl Duty {
     }
 
     /// The post that the robot held before this duty and handed over to another robot.
-    pub const fn left(&self) -> Option<PostId> {
+    pub(super) const fn left(&self) -> Option<PostId> {
         match (self, self.held()) {
             (Duty::Shifting(shifting), _) => shifting.left,
             (_, Some(held)) => held.left,
@@ -213,28 +213,23 @@ impl Duty {
         matches!(self, Duty::Following(_) | Duty::Leading(_))
     }
 
-    /// Whether the robot holds a fixed post.
-    pub fn is_fixed(&self) -> bool {
-        self.post().is_some_and(Post::is_fixed)
-    }
-
     /// Whether the robot holds the post of a redundant robot.
     pub fn is_redundant(&self) -> bool {
         self.post().is_some_and(Post::is_redundant)
     }
 
     /// Whether the robot is the elected leader and has yet to be released (L_b = 1).
-    pub const fn is_bound(&self) -> bool {
+    pub(super) const fn is_bound(&self) -> bool {
         matches!(self, Duty::Bound(_) | Duty::AwaitingRelease(_))
     }
 
     /// Whether the robot is the elected leader, released or not.
-    pub const fn leads(&self) -> bool {
+    pub(super) const fn leads(&self) -> bool {
         matches!(self, Duty::Leading(_)) || self.is_bound()
     }
 
     /// The role that the duty is in the paper's terms.
-    pub const fn role(&self) -> Role {
+    pub(super) const fn role(&self) -> Role {
         match self {
             Duty::Standby(_) => Role::Redundant,
             Duty::Relay(_) | Duty::Following(_) => Role::Node,
@@ -263,6 +258,6 @@ pub struct PathPlace {
 }
 
 /// The path Σ with its geometry.
-pub type Path = path::Path<PathPlace>;
+pub(super) type Path = path::Path<PathPlace>;
 /// One place of the path Σ with its geometry.
-pub type Hop = path::Hop<PathPlace>;
+pub(super) type Hop = path::Hop<PathPlace>;

@@ -42,7 +42,7 @@ pub struct Crash {
 }
 
 /// How a node is made anew that has forgotten everything: from where its body stands.
-pub type Maker = Arc<dyn Fn(Point) -> Member + Send + Sync>;
+pub(super) type Maker = Arc<dyn Fn(Point) -> Member + Send + Sync>;
 
 /// A node with its faults.
 #[derive(Clone)]

@@ -38,7 +38,7 @@ pub enum Sense {
 }
 
 /// What a node of the network sends and reports in its steps.
-pub type NodeOutputs = Outputs<Message, MissionEvent>;
+pub(super) type NodeOutputs = Outputs<Message, MissionEvent>;
 
 /// A node as observers see it.
 #[derive(Clone, Copy, Debug)]

@@ -104,19 +104,19 @@ pub struct Walk {
 
 impl Shift {
     /// The subgroup that is the active team; none when all have arrived.
-    pub fn active(&self) -> Option<Subgroup> {
+    pub(super) fn active(&self) -> Option<Subgroup> {
         self.subgroups.get(self.arrived).copied()
     }
 
     /// The subgroup that relieves the robot at `place`.
-    pub fn subgroup_up_to(&self, place: usize) -> Option<Subgroup> {
+    pub(super) fn subgroup_up_to(&self, place: usize) -> Option<Subgroup> {
         self.subgroups.iter().copied().find(|subgroup| subgroup.end == place)
     }
 }
 
 impl Mission {
     /// The path Σ that matters in this phase.
-    pub const fn path(&self) -> Option<&Arc<Path>> {
+    pub(super) const fn path(&self) -> Option<&Arc<Path>> {
         match self {
             Mission::PathAgreement(PathAgreement { path }) | Mission::Shift(Shift { path, .. }) => {
                 Some(path)
@@ -128,7 +128,7 @@ impl Mission {
     }
 
     /// The path Σ that matters in this phase, or did when the mission ended, to a robot on its way along it.
-    pub fn walk(&self) -> Option<Walk> {
+    pub(super) fn walk(&self) -> Option<Walk> {
         match self {
             Mission::Ended(Ended { walk }) => walk.clone(),
             _ => self.path().map(|path| Walk {
@@ -139,7 +139,7 @@ impl Mission {
     }
 
     /// The election of a recruit, while one is under way.
-    pub const fn recruit_election(&self) -> Option<&RecruitElection> {
+    pub(super) const fn recruit_election(&self) -> Option<&RecruitElection> {
         match self {
             Mission::RecruitElection(election) => Some(election),
             _ => None,
@@ -147,12 +147,12 @@ impl Mission {
     }
 
     /// Whether a recruit has been called for ahead of a standstill since one joined last, in vain.
-    pub const fn has_called_in_vain(&self) -> bool {
+    pub(super) const fn has_called_in_vain(&self) -> bool {
         matches!(self, Mission::Advance(Advance { in_vain: true, .. }))
     }
 
     /// The subgroups of the secondary team and which of them is active, while one is.
-    pub const fn shift(&self) -> Option<&Shift> {
+    pub(super) const fn shift(&self) -> Option<&Shift> {
         match self {
             Mission::Shift(shift) => Some(shift),
             _ => None,

@@ -2,7 +2,7 @@
 
 pub mod access_point;
 mod act;
-pub mod automata;
+mod automata;
 mod ballot;
 pub mod beacon;
 pub mod certificate;
@@ -13,8 +13,8 @@ pub mod faulty_node;
 pub mod fleets;
 mod guards;
 mod link;
-pub mod medium;
-pub mod member;
+mod medium;
+mod member;
 mod membership;
 pub mod merging;
 pub mod message;
@@ -25,13 +25,13 @@ pub mod order;
 mod outbox;
 pub mod phrase;
 pub mod record;
-pub mod renumbering;
+mod renumbering;
 pub mod robot;
 pub mod roll;
 pub mod scenario;
-pub mod service;
+mod service;
 pub mod shared;
-pub mod site;
+mod site;
 pub mod user;
 mod wire;
 
@@ -49,5 +49,7 @@ pub use robot::{
     Robot, RobotView, SATURATED, attachment_automaton, control_automaton, duty_automaton,
     exchange_automaton, mission_automaton,
 };
+#[cfg(feature = "abstraction")]
+pub use site::Measure;
 pub use site::{Site, SiteError};
 pub use user::{User, request_automaton};

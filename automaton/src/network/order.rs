@@ -51,7 +51,7 @@ impl Order {
 
     /// Whether it was surely given before `other`: a medium may deliver copies late, and a user that begins
     /// again begins with less.
-    pub fn is_older_than(&self, other: &Self) -> bool {
+    pub(super) fn is_older_than(&self, other: &Self) -> bool {
         let taken_back = |order: &Self| order.tasks.iter().filter(|task| task.withdrawn).count();
         self.tasks.len() < other.tasks.len() || taken_back(self) < taken_back(other)
     }

@@ -45,7 +45,7 @@ impl Renumbering {
     }
 
     /// The numbers of these nodes; none if one of them has none.
-    pub fn nodes(&self, nodes: &[usize]) -> Option<Vec<usize>> {
+    pub(super) fn nodes(&self, nodes: &[usize]) -> Option<Vec<usize>> {
         nodes.iter().map(|&node| self.node(node)).collect()
     }
 

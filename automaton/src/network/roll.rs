@@ -52,12 +52,12 @@ pub struct Wreck {
 
 impl Wreck {
     /// A robot that is heard.
-    pub const fn heard(robot: NodeId, place: Point, heard_in: u32) -> Self {
+    pub(super) const fn heard(robot: NodeId, place: Point, heard_in: u32) -> Self {
         Wreck { robot, place, heard_in, astray: 0.0 }
     }
 
     /// A robot that tells of its next move.
-    pub fn setting_off(robot: NodeId, segment: Segment, heard_in: u32) -> Self {
+    pub(super) fn setting_off(robot: NodeId, segment: Segment, heard_in: u32) -> Self {
         Wreck { astray: segment.length(), ..Wreck::heard(robot, segment.from, heard_in) }
     }
 
@@ -93,13 +93,13 @@ impl Sightings {
 
 impl Absent {
     /// Whether all robots take part.
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.suspended.is_empty() && self.gone.is_empty()
     }
 
     /// Brings up to date where each robot that does not take part was heard last, by number: of what is
     /// known and of what has been seen. One that nobody has heard of is where it starts.
-    pub fn locate(
+    pub(super) fn locate(
         &self,
         known: &mut Arc<Vec<Wreck>>,
         seen: impl IntoIterator<Item = Wreck>,
@@ -130,7 +130,7 @@ impl Absent {
     }
 
     /// Whether `robot` does not take part.
-    pub fn contains(&self, robot: NodeId) -> bool {
+    pub(super) fn contains(&self, robot: NodeId) -> bool {
         self.suspended.contains(robot) || self.gone.contains(robot)
     }
 }
@@ -138,7 +138,7 @@ impl Absent {
 impl Roll {
     /// Takes over `heard` if it was called later; returns whether other robots are absent now.
     #[inline]
-    pub fn merge(&mut self, heard: &Roll) -> bool {
+    pub(super) fn merge(&mut self, heard: &Roll) -> bool {
         if heard.called <= self.called {
             return false;
         }
@@ -151,18 +151,18 @@ impl Roll {
     }
 
     /// Whether this roll is valid in control period `period`, if rolls are for `validity` periods.
-    pub const fn is_valid(&self, period: u32, validity: u32) -> bool {
+    pub(super) const fn is_valid(&self, period: u32, validity: u32) -> bool {
         period <= self.called.saturating_add(validity)
     }
 
     /// Whether `robot` may move in control period `period` by this roll, if rolls are valid for
     /// `validity` periods.
-    pub fn lets_move(&self, robot: NodeId, period: u32, validity: u32) -> bool {
+    pub(super) fn lets_move(&self, robot: NodeId, period: u32, validity: u32) -> bool {
         self.is_valid(period, validity) && !self.absent.contains(robot)
     }
 
     /// Whether `robot` is called gone.
-    pub fn calls_gone(&self, robot: NodeId) -> bool {
+    pub(super) fn calls_gone(&self, robot: NodeId) -> bool {
         self.absent.gone.contains(robot)
     }
 }

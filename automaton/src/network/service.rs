@@ -7,7 +7,7 @@ use pleach_discrete::network::{IdSet, Request, Round, Service};
 
 crate::places_of! {
     /// Where the service of the tasks stands for an access point: a [`Service`] with its data.
-    pub enum Serving: Service {
+    pub(super) enum Serving: Service {
         /// No task has been announced.
         Gathering(Gathering),
         /// A leader or a recruit is being elected.
@@ -23,11 +23,11 @@ crate::places_of! {
 
 /// The data of [`Service::Gathering`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Gathering;
+pub(super) struct Gathering;
 
 /// A task with those who elect its leader.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Announced {
+pub(super) struct Announced {
     /// Its number.
     pub task: usize,
     /// The robots that take part in elections for it.
@@ -40,33 +40,33 @@ pub struct Announced {
 
 /// The data of [`Service::Electing`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Electing {
+pub(super) struct Electing {
     /// The task announced last, if this access point has heard of its announcement.
     pub announced: Option<Announced>,
 }
 
 /// The data of [`Service::UnderWay`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnderWay {
+pub(super) struct UnderWay {
     /// The task announced last, if this access point has heard of its announcement.
     pub announced: Option<Announced>,
 }
 
 /// The data of [`Service::Done`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Done {
+pub(super) struct Done {
     /// The task.
     pub task: usize,
 }
 
 /// The data of [`Service::Over`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Over;
+pub(super) struct Over;
 
 crate::places_of! {
     /// The stage of an access point in its control period: a [`Round`] with its data.
     #[derive(Copy)]
-    pub enum Rounds: Round {
+    pub(super) enum Rounds: Round {
         /// It waits for the next sample.
         Resting(Resting),
         /// It waits for beacons.
@@ -76,11 +76,11 @@ crate::places_of! {
 
 /// The data of [`Round::Resting`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Resting;
+pub(super) struct Resting;
 
 /// The data of [`Round::Listening`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Listening {
+pub(super) struct Listening {
     /// The round of beacons, from 1.
     pub round: usize,
 }
@@ -88,7 +88,7 @@ pub struct Listening {
 crate::places_of! {
     /// Where a user stands with its request: a [`Request`]; none of them has data.
     #[derive(Copy)]
-    pub enum Asked: Request {
+    pub(super) enum Asked: Request {
         /// The first control period has not begun.
         Preparing(Preparing),
         /// It asks for its tasks.
@@ -104,20 +104,20 @@ crate::places_of! {
 
 /// The data of [`Request::Preparing`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Preparing;
+pub(super) struct Preparing;
 
 /// The data of [`Request::Asking`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Asking;
+pub(super) struct Asking;
 
 /// The data of [`Request::Waiting`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Waiting;
+pub(super) struct Waiting;
 
 /// The data of [`Request::Informed`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Informed;
+pub(super) struct Informed;
 
 /// The data of [`Request::Deserted`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Deserted;
+pub(super) struct Deserted;

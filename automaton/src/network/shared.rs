@@ -14,7 +14,7 @@ pub struct Shared<T>(Arc<T>);
 
 impl<T> Shared<T> {
     /// Shares `value`.
-    pub fn new(value: T) -> Self {
+    pub(super) fn new(value: T) -> Self {
         Shared(Arc::new(value))
     }
 }

@@ -163,7 +163,7 @@ impl Site {
     ///
     /// # Errors
     /// When links reach no farther than positions may be off.
-    pub fn with_link(
+    pub(super) fn with_link(
         self,
         model: impl LinkReliability + 'static,
     ) -> Result<Self, ReliabilityError> {
@@ -177,7 +177,7 @@ impl Site {
         Ok(Site { link, radio, usual, stretched, watch_radius, has_own_link: true, ..self })
     }
 
-    /// Whether links behave as the model given to [`with_link`](Self::with_link) says.
+    /// Whether links behave as the model given to [`with_link`](super::scenario::ValidScenario::with_link) says.
     pub const fn has_own_link(&self) -> bool {
         self.has_own_link
     }
@@ -236,7 +236,7 @@ impl Site {
     }
 
     /// The number by which people know a node.
-    pub fn name_of(&self, node: NodeId) -> usize {
+    pub(super) fn name_of(&self, node: NodeId) -> usize {
         self.names.as_ref().and_then(|names| names.node(node)).unwrap_or(node)
     }
 
@@ -246,7 +246,7 @@ impl Site {
     }
 
     /// The number by which people know a task.
-    pub fn name_of_task(&self, task: usize) -> usize {
+    pub(super) fn name_of_task(&self, task: usize) -> usize {
         self.names.as_ref().and_then(|names| names.task(task)).unwrap_or(task)
     }
 
@@ -256,12 +256,12 @@ impl Site {
     }
 
     /// Whether links are from the beginning as long as they may be, since the robots start so far apart.
-    pub const fn begins_stretched(&self) -> bool {
+    pub(super) const fn begins_stretched(&self) -> bool {
         self.begins_stretched
     }
 
     /// Whether links may be any longer when no robot is left that can be recruited.
-    pub fn could_stretch(&self) -> bool {
+    pub(super) fn could_stretch(&self) -> bool {
         self.stretched.build > self.usual.build
     }
 
@@ -275,30 +275,30 @@ impl Site {
 
     /// Whether robots at this distance move only if they have heard each other in the same control
     /// period: they may come into contact within a few periods. Robots on places of a graph never do.
-    pub fn is_near(&self, distance: f64) -> bool {
+    pub(super) fn is_near(&self, distance: f64) -> bool {
         !self.is_graph() && distance <= self.watch_radius
     }
 
     /// Whether robots at this distance are in contact, which they are up to `contact`. Always on a graph of places, where
     /// explorers decide which robots meet.
-    pub fn may_touch(&self, distance: f64, contact: f64) -> bool {
+    pub(super) fn may_touch(&self, distance: f64, contact: f64) -> bool {
         self.is_graph() || distance <= contact
     }
 
     /// Whether two robots could come into contact in this control period that were this far apart when one
     /// of them was heard last, so many periods ago.
-    pub fn could_meet(&self, distance: f64, periods: u32) -> bool {
+    pub(super) fn could_meet(&self, distance: f64, periods: u32) -> bool {
         let way = f64::from(periods) * self.settings.longest_step();
         !self.is_graph() && distance <= self.settings.meeting_distance() + way
     }
 
     /// Whether a robot that is not heard any more, and was this far away, has not just gone out of range.
-    pub fn is_well_in_range(&self, distance: f64) -> bool {
+    pub(super) fn is_well_in_range(&self, distance: f64) -> bool {
         !self.is_graph() && distance <= Self::well_in_range(&self.settings, &self.link)
     }
 
     /// The number of the access point that is this node; none if it is a robot.
-    pub fn access_point_of(&self, node: NodeId) -> Option<usize> {
+    pub(super) fn access_point_of(&self, node: NodeId) -> Option<usize> {
         node.checked_sub(self.robots).filter(|&number| number < self.access_points.len())
     }
 
@@ -308,7 +308,10 @@ impl Site {
     }
 
     /// The robots that start [well in range](Self::is_well_in_range) of this place, and where.
-    pub fn starts_well_in_range(&self, place: Point) -> impl Iterator<Item = (NodeId, Point)> {
+    pub(super) fn starts_well_in_range(
+        &self,
+        place: Point,
+    ) -> impl Iterator<Item = (NodeId, Point)> {
         let range = Self::well_in_range(&self.settings, &self.link);
         let is_west = |&robot: &NodeId| self.starts[robot].x < place.x - range;
         let first = self.west_to_east.partition_point(is_west);
@@ -319,7 +322,7 @@ impl Site {
 
     /// Control periods for which a roll is valid: as long as it may take to reach every robot, some
     /// messages being lost. Beacons that stay the same carry it over three links in a period.
-    pub fn roll_validity(&self) -> u32 {
+    pub(super) fn roll_validity(&self) -> u32 {
         ROLL_MARGIN + 2 * self.nodes().div_ceil(ROUNDS_TO_BE_HEARD) as u32
     }
 
@@ -331,12 +334,12 @@ impl Site {
 
     /// For how many rounds news is under way, without losses, between nodes of trees that are no deeper than
     /// this: up one tree and down another, and no longer than there are nodes to pass it on.
-    pub fn rounds_across(&self, depth: usize) -> usize {
+    pub(super) fn rounds_across(&self, depth: usize) -> usize {
         (2 * depth + ROUNDS_TO_SPARE).min(self.nodes())
     }
 
     /// The longest wait of a node that is told of another; no longer than that among as many nodes as there are.
-    pub fn longer_wait(&self, known: usize, told: usize) -> usize {
+    pub(super) fn longer_wait(&self, known: usize, told: usize) -> usize {
         known.max(told.min(self.nodes()))
     }
 
@@ -359,7 +362,7 @@ impl Site {
 
     /// The length of the shortest way to the place from which a task is serviced, from the nearest of these places or of
     /// the free places beside them; infinite if there is none.
-    pub fn way_from(&self, places: &[Point], task: Point) -> f64 {
+    pub(super) fn way_from(&self, places: &[Point], task: Point) -> f64 {
         let ways = places.iter().map(|&place| {
             let start = self.free_space.nearest(place);
             self.distance(start, self.place_to_service(task, start))
@@ -378,7 +381,7 @@ impl Site {
 
     /// The length of the shortest way around these discs; none if they close it. None of them counts where ways are not
     /// those of the floor plan.
-    pub fn distance_around(&self, from: Point, to: Point, discs: &[Disc]) -> Option<f64> {
+    pub(super) fn distance_around(&self, from: Point, to: Point, discs: &[Disc]) -> Option<f64> {
         if discs.is_empty() || self.is_graph() {
             return Some(self.distance(from, to));
         }
@@ -388,7 +391,7 @@ impl Site {
     /// The length of a link as the tree counts it: how far it has to reach so that a robot can walk from one end to the
     /// other without losing it. That is the distance of its ends, unless the [way](pleach_continuous::geometry::Geodesic::reach) around walls leads
     /// farther from one of them. Infinite if no way leads there.
-    pub fn link_length(&self, from: Point, to: Point) -> f64 {
+    pub(super) fn link_length(&self, from: Point, to: Point) -> f64 {
         #[cfg(feature = "abstraction")]
         if let Some(measure) = &self.measure {
             return measure.distance(from, to);
@@ -397,7 +400,7 @@ impl Site {
     }
 
     /// The length of a link, or infinity when that is longer than any link of the tree.
-    pub fn walk(&self, from: Point, to: Point) -> f64 {
+    pub(super) fn walk(&self, from: Point, to: Point) -> f64 {
         match (to - from).norm() > REACH_OF_INTEREST * self.stretched.hard && !self.is_graph() {
             true => f64::INFINITY,
             false => self.link_length(from, to),
@@ -415,7 +418,7 @@ impl Site {
     }
 
     /// How many links lead from one place to within `rest` of another along the shortest way, each as long as it may be.
-    pub fn links_between(&self, from: Point, to: Point, longest: f64, rest: f64) -> f64 {
+    pub(super) fn links_between(&self, from: Point, to: Point, longest: f64, rest: f64) -> f64 {
         #[cfg(feature = "abstraction")]
         if let Some(measure) = &self.measure {
             return ((measure.distance(from, to) - rest).max(0.0) / longest).ceil();

@@ -53,7 +53,7 @@ const PATIENCE: u32 = 100;
 /// What a user does when it takes a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum UserAct {
+pub(super) enum UserAct {
     /// τ := 0.
     RestartClock,
     /// Another control period is over.
@@ -65,15 +65,13 @@ pub enum UserAct {
 }
 
 /// What a user does when it takes a row, in this order.
-pub type UserActs = &'static [UserAct];
+pub(super) type UserActs = &'static [UserAct];
 
 /// The automaton of a user.
-pub type RequestAutomaton = Automaton<Request, RequestEvent, User>;
+pub(super) type RequestAutomaton = Automaton<Request, RequestEvent, User>;
 
 crate::observed! {
     impl Observed for User as user;
-    /// What the guards of the user read.
-    pub const USER_GLOSSARY;
     quantities {
         /// τ: seconds since the last sample.
         clock: user.clock,

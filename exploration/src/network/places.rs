@@ -3,11 +3,11 @@
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
+use pleach_automaton::network::Measure;
 use pleach_automaton::network::scenario::{
     AccessPoint, Agenda, Control, LinkRanges, RobotStart, Scenario, Settings, Strategy, Task,
     Unreachable, WorkspaceOutline,
 };
-use pleach_automaton::network::site::Measure;
 use pleach_continuous::Point;
 
 use super::protocol::RATE;

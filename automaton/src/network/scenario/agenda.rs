@@ -44,7 +44,7 @@ pub const AGENDA: &[(&str, &[&str])] =
 
 impl Agenda {
     /// Whether it states nothing.
-    pub fn is_default(&self) -> bool {
+    pub(super) fn is_default(&self) -> bool {
         *self == Agenda::default()
     }
 }

@@ -67,7 +67,7 @@ pub enum Teams {
 
 impl Teams {
     /// Whether there is one team.
-    pub const fn is_one(self) -> bool {
+    pub(super) const fn is_one(self) -> bool {
         matches!(self, Teams::One)
     }
 }
@@ -205,7 +205,7 @@ impl Values {
     }
 
     /// The number that `control` states at this key, unless it is a count or a word.
-    pub fn number(&self, control: &Control) -> Option<f64> {
+    pub(super) fn number(&self, control: &Control) -> Option<f64> {
         match self {
             Values::Length(stated)
             | Values::Error(stated)

@@ -46,11 +46,6 @@ impl KeyPath {
     pub fn steps(&self) -> &[KeyStep] {
         &self.0
     }
-
-    /// Whether this is the scenario as a whole.
-    pub fn is_root(&self) -> bool {
-        self.0.is_empty()
-    }
 }
 
 impl fmt::Display for KeyPath {

@@ -60,7 +60,7 @@ impl LinkRanges {
     ///
     /// # Errors
     /// Unless 0 ≤ `full_range` < `max_range` and both are finite, and the steepness is at least 2.
-    pub fn link(&self) -> Result<Link, ReliabilityError> {
+    pub(crate) fn link(&self) -> Result<Link, ReliabilityError> {
         let Self { model, full_range, max_range, steepness } = *self;
         Ok(match model {
             LinkModel::Cubic => Link::new(CubicReliability::new(full_range, max_range)?),
@@ -74,7 +74,7 @@ impl LinkRanges {
 
     /// The same with the default written out that its model has.
     #[must_use]
-    pub fn with_defaults(self) -> Self {
+    pub(super) fn with_defaults(self) -> Self {
         let steepness = match self.model {
             LinkModel::Cubic => None,
             LinkModel::Logistic => Some(self.steepness.unwrap_or(STEEPNESS)),

@@ -148,12 +148,12 @@ impl Settings {
 
     /// 2 (ρ + e + m) + 2σ: from how far apart, by what they know, two robots could come into contact in one
     /// control period. With errors, robots that measure this are truly 2ρ + 2 (σ + m) apart.
-    pub fn meeting_distance(&self) -> f64 {
+    pub(crate) fn meeting_distance(&self) -> f64 {
         2.0 * (self.planning_clearance() + self.step_radius)
     }
 
     /// σ + m: how far a move leads at most.
-    pub fn longest_step(&self) -> f64 {
+    pub(crate) fn longest_step(&self) -> f64 {
         self.step_radius + self.errors.motion
     }
 
@@ -167,7 +167,7 @@ impl Settings {
     }
 
     /// δ − e: a robot that measures itself within this distance of a place is truly within δ of it.
-    pub fn arrival_radius(&self) -> f64 {
+    pub(crate) fn arrival_radius(&self) -> f64 {
         self.service_radius - self.errors.position
     }
 
@@ -177,7 +177,7 @@ impl Settings {
     }
 
     /// m ≥ σ: whether even the longest move may miss its target by its whole length.
-    pub fn moves_may_miss(&self) -> bool {
+    pub(super) fn moves_may_miss(&self) -> bool {
         self.errors.motion >= self.step_radius
     }
 
@@ -190,7 +190,7 @@ impl Settings {
     /// what they know. With both ends of it on the move, it may be measured longer by twice the
     /// [stray](Errors::stray), 4e + 2m; as long as it is not measured longer than that, they may move
     /// without making it longer by what they know, and it may truly be longer by 2e + 2m then.
-    pub fn length_margin(&self) -> f64 {
+    pub(super) fn length_margin(&self) -> f64 {
         2.0 * self.errors.stray() + 2.0 * (self.errors.position + self.errors.motion)
     }
 
@@ -200,7 +200,7 @@ impl Settings {
     }
 
     /// How long they may be when no robot is left that can be recruited.
-    pub fn stretched_links(&self) -> LinkLengths {
+    pub(crate) fn stretched_links(&self) -> LinkLengths {
         self.stretched_link_lengths(self.link.distance_of(self.tree_reliability))
     }
 
@@ -224,7 +224,7 @@ pub struct LinkLengths {
     /// d_build: up to which length a link may be made. Both its robots may still come to stand δ away from
     /// their posts without passing d_hard.
     pub build: f64,
-    /// d_hard: the length that links never exceed, less [what errors add](Settings::length_margin).
+    /// d_hard: the length that links never exceed, less what errors add.
     pub hard: f64,
 }
 
