@@ -186,7 +186,7 @@ impl<J> Round<'_, J> {
 
     /// The components that `participants` finds have jumped together: this is one jump. It is
     /// asked only where an observer looks at jumps.
-    pub fn jumped_by(&mut self, jump: J, participants: impl FnOnce() -> Participants) {
+    pub(crate) fn jumped_by(&mut self, jump: J, participants: impl FnOnce() -> Participants) {
         let by = if self.report.is_some() { participants() } else { Participants::All };
         self.record(by, jump);
     }
@@ -311,7 +311,7 @@ impl<F: fmt::Display> fmt::Display for Reason<F> {
 
 impl Reason<Infallible> {
     /// The same for a system that can end by itself in ways that this one does not have.
-    pub fn without_finish<F>(self) -> Reason<F> {
+    pub(crate) fn without_finish<F>(self) -> Reason<F> {
         match self {
             Reason::Finished(never) | Reason::Interrupted(never) => match never {},
             Reason::Horizon => Reason::Horizon,
