@@ -89,7 +89,7 @@ impl Sketch {
 
 impl Sketch {
     /// The locations in their order, but those of a superstate one after another.
-    pub fn order(&self) -> Vec<usize> {
+    pub(super) fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = Vec::new();
         for location in 0..self.modes.len() {
             let of_location = |(_, members): &&(_, Vec<usize>)| members.contains(&location);
@@ -103,7 +103,7 @@ impl Sketch {
     }
 
     /// The superstates and locations that stand directly in a superstate, or in none.
-    pub fn within(&self, outer: Option<usize>) -> Contents {
+    pub(super) fn within(&self, outer: Option<usize>) -> Contents {
         let members = |number: usize| &self.superstates[number].1;
         let is_in = |location: &usize| outer.is_none_or(|outer| members(outer).contains(location));
         // Those with more locations come first: what a superstate contains comes after it.

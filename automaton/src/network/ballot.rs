@@ -23,18 +23,18 @@ pub(super) struct Ballot {
 
 impl Ballot {
     /// The robot takes part in an election, from the way to the caller that it knows.
-    pub fn begin(&mut self, election: Election, route: Option<CallRoute>) {
+    pub(super) fn begin(&mut self, election: Election, route: Option<CallRoute>) {
         (self.election, self.bid, self.route) = (Some(Arc::new(election)), None, route);
         self.waited_rounds = 1;
     }
 
     /// The robot takes part in this agreement, or in none.
-    pub fn agree(&mut self, agreement: Option<Agreement>) {
+    pub(super) fn agree(&mut self, agreement: Option<Agreement>) {
         self.agreement = agreement;
     }
 
     /// Merges what a neighbour knows.
-    pub fn merge(&mut self, beacon: &Beacon) {
+    pub(super) fn merge(&mut self, beacon: &Beacon) {
         if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
             merge_election(own, heard);
         }
@@ -44,27 +44,27 @@ impl Ballot {
     }
 
     /// The election that the robot takes part in, or took part in last.
-    pub const fn election(&self) -> Option<&Arc<Election>> {
+    pub(super) const fn election(&self) -> Option<&Arc<Election>> {
         self.election.as_ref()
     }
 
     /// Whether this is the election.
-    pub fn is_of(&self, election: NoticeId) -> bool {
+    pub(super) fn is_of(&self, election: NoticeId) -> bool {
         self.election.as_ref().is_some_and(|own| own.id() == election)
     }
 
     /// Whether the token of the robot is in the election.
-    pub fn has_token(&self, robot: NodeId) -> bool {
+    pub(super) fn has_token(&self, robot: NodeId) -> bool {
         self.election.as_ref().is_some_and(|election| election.has_token(robot))
     }
 
     /// The best bid that is known, and the robot that has placed it.
-    pub fn best(&self) -> Option<(Bid, NodeId)> {
+    pub(super) fn best(&self) -> Option<(Bid, NodeId)> {
         self.election.as_ref()?.best()
     }
 
     /// Places the token of the robot, with its bid if it competes, once.
-    pub fn place(&mut self, robot: NodeId, bid: Option<Bid>) {
+    pub(super) fn place(&mut self, robot: NodeId, bid: Option<Bid>) {
         if let Some(election) = &mut self.election
             && !election.has_token(robot)
         {
@@ -74,55 +74,55 @@ impl Ballot {
     }
 
     /// Counts one more round; returns whether a wait is over, where news takes at most `longest_wait` rounds.
-    pub const fn count_round(&mut self, longest_wait: usize) -> bool {
+    pub(super) const fn count_round(&mut self, longest_wait: usize) -> bool {
         self.pass_round();
         self.waited_rounds == longest_wait + 1 || self.waited_rounds == 2 * longest_wait
     }
 
     /// A round of the election is over.
-    pub const fn pass_round(&mut self) {
+    pub(super) const fn pass_round(&mut self) {
         self.waited_rounds += 1;
     }
 
     /// For how many rounds the election has been under way: the round in which it began does not count.
-    pub const fn rounds_passed(&self) -> usize {
+    pub(super) const fn rounds_passed(&self) -> usize {
         self.waited_rounds.saturating_sub(1)
     }
 
     /// Whether the robot has taken part for this many rounds.
-    pub const fn has_waited_for(&self, rounds: usize) -> bool {
+    pub(super) const fn has_waited_for(&self, rounds: usize) -> bool {
         self.waited_rounds >= rounds
     }
 
     /// The way to the robot that has issued this call.
-    pub fn route_of(&self, call: NoticeId) -> Option<&CallRoute> {
+    pub(super) fn route_of(&self, call: NoticeId) -> Option<&CallRoute> {
         self.route.as_ref().filter(|&&(id, _)| id == call)
     }
 
     /// The way to the robot that called last.
-    pub const fn route(&self) -> Option<&CallRoute> {
+    pub(super) const fn route(&self) -> Option<&CallRoute> {
         self.route.as_ref()
     }
 
     /// The way to the robot that calls is this, or is not known.
-    pub fn set_route(&mut self, route: Option<CallRoute>) {
+    pub(super) fn set_route(&mut self, route: Option<CallRoute>) {
         self.route = route;
     }
 
     /// The agreement that the robot takes part in, or took part in last.
-    pub const fn agreement(&self) -> Option<&Agreement> {
+    pub(super) const fn agreement(&self) -> Option<&Agreement> {
         self.agreement.as_ref()
     }
 
     /// The robot reports that it has left this place of Σ, and arrived at the next.
-    pub fn arrive(&mut self, place: usize) {
+    pub(super) fn arrive(&mut self, place: usize) {
         if let Some(agreement) = &mut self.agreement {
             agreement.arrive(place);
         }
     }
 
     /// The robot gives up the post at this place of Σ.
-    pub fn give_up(&mut self, place: usize) {
+    pub(super) fn give_up(&mut self, place: usize) {
         if let Some(agreement) = &mut self.agreement {
             agreement.give_up(place);
         }
@@ -132,12 +132,12 @@ impl Ballot {
 #[cfg(any(test, feature = "abstraction"))]
 impl Ballot {
     /// What the robot has bid in the election.
-    pub const fn bid(&self) -> Option<Bid> {
+    pub(super) const fn bid(&self) -> Option<Bid> {
         self.bid
     }
 
     /// For how many rounds it has taken part.
-    pub const fn waited_rounds(&self) -> usize {
+    pub(super) const fn waited_rounds(&self) -> usize {
         self.waited_rounds
     }
 }
@@ -145,12 +145,12 @@ impl Ballot {
 #[cfg(test)]
 impl Ballot {
     /// The robot takes part in this election.
-    pub fn takes_part_in(&mut self, election: Election) {
+    pub(super) fn takes_part_in(&mut self, election: Election) {
         self.election = Some(Arc::new(election));
     }
 
     /// The robot has taken part for this many rounds.
-    pub const fn has_waited(&mut self, rounds: usize) {
+    pub(super) const fn has_waited(&mut self, rounds: usize) {
         self.waited_rounds = rounds;
     }
 }

@@ -35,18 +35,18 @@ pub(super) struct Membership {
 
 impl Membership {
     /// That of a robot that begins again, and keeps the newest roll.
-    pub fn begun_again(self) -> Self {
+    pub(super) fn begun_again(self) -> Self {
         Membership { roll: self.roll, ..Membership::default() }
     }
 
     /// The robot joins a mission under way.
-    pub const fn join_in(&mut self, period: u32) {
+    pub(super) const fn join_in(&mut self, period: u32) {
         self.joined_in = period;
     }
 
     /// A roll is received; returns whether other robots are absent now.
     #[inline]
-    pub fn receive_roll(&mut self, roll: &Roll) -> bool {
+    pub(super) fn receive_roll(&mut self, roll: &Roll) -> bool {
         let called = self.roll.called;
         let differs = self.roll.merge(roll);
         let newest = self.roll.called;
@@ -58,7 +58,7 @@ impl Membership {
     }
 
     /// The first access point calls the roll.
-    pub fn call_roll(&mut self, period: u32, absent: Absent) {
+    pub(super) fn call_roll(&mut self, period: u32, absent: Absent) {
         if *self.roll.absent != absent {
             self.roll.absent = Arc::new(absent);
         }
@@ -66,63 +66,63 @@ impl Membership {
     }
 
     /// The newest roll.
-    pub const fn roll(&self) -> &Roll {
+    pub(super) const fn roll(&self) -> &Roll {
         &self.roll
     }
 
     /// Whether all robots take part, and no bodies lie about.
-    pub fn is_complete(&self) -> bool {
+    pub(super) fn is_complete(&self) -> bool {
         self.roll.absent.is_empty() && self.wrecks.is_empty()
     }
 
     /// Whether a robot does not take part.
-    pub fn is_absent(&self, robot: NodeId) -> bool {
+    pub(super) fn is_absent(&self, robot: NodeId) -> bool {
         self.roll.absent.contains(robot)
     }
 
     /// Whether a robot is called gone.
-    pub fn is_gone(&self, robot: NodeId) -> bool {
+    pub(super) fn is_gone(&self, robot: NodeId) -> bool {
         self.roll.calls_gone(robot)
     }
 
     /// Whether the robot has begun later than others, and so does not know where robots are that it does not receive.
-    pub const fn is_late_comer(&self) -> bool {
+    pub(super) const fn is_late_comer(&self) -> bool {
         self.joined_in > 0
     }
 
     /// Whether all are known that do not take part: a robot that has begun later than others receives their
     /// names with a roll that is called long enough afterwards.
-    pub const fn knows_who_is_absent(&self) -> bool {
+    pub(super) const fn knows_who_is_absent(&self) -> bool {
         !self.is_late_comer() || self.joined_in.saturating_add(TOLD_AFTER) <= self.roll.called
     }
 
     /// A robot was seen, by this one or by another.
-    pub fn note(&mut self, seen: Wreck) {
+    pub(super) fn note(&mut self, seen: Wreck) {
         self.out_of_sight.note(seen);
     }
 
     /// A robot that was well in range is not received: it may be on its way.
-    pub fn miss(&mut self, lost: Wreck) {
+    pub(super) fn miss(&mut self, lost: Wreck) {
         self.missing.note(lost);
     }
 
     /// A robot is received that was out of sight.
-    pub fn find(&mut self, robot: NodeId) {
+    pub(super) fn find(&mut self, robot: NodeId) {
         self.missing.retain(|lost| lost.robot != robot);
     }
 
     /// The robots that may be on their way.
-    pub fn missing(&self) -> impl Iterator<Item = Wreck> {
+    pub(super) fn missing(&self) -> impl Iterator<Item = Wreck> {
         self.missing.iter()
     }
 
     /// The bodies of those that do not take part.
-    pub const fn wrecks(&self) -> &Arc<Vec<Wreck>> {
+    pub(super) const fn wrecks(&self) -> &Arc<Vec<Wreck>> {
         &self.wrecks
     }
 
     /// Where the bodies are of those that do not take part, from what has been seen before, and now.
-    pub fn locate_wrecks(
+    pub(super) fn locate_wrecks(
         &mut self,
         seen: impl Iterator<Item = Wreck>,
         start_of: impl Fn(NodeId) -> Option<Point>,
@@ -132,7 +132,7 @@ impl Membership {
     }
 
     /// The robot sets off from a place.
-    pub fn set_off(&mut self, period: u32, place: Point) {
+    pub(super) fn set_off(&mut self, period: u32, place: Point) {
         match self.trail.last_mut() {
             Some((last, known)) if *known == place => *last = period,
             _ => self.trail.push((period, place)),
@@ -140,7 +140,7 @@ impl Membership {
     }
 
     /// Where the robot has set off since its roll was called.
-    pub fn trail(&self) -> impl Iterator<Item = Point> {
+    pub(super) fn trail(&self) -> impl Iterator<Item = Point> {
         self.trail.iter().map(|&(_, place)| place)
     }
 }
@@ -148,12 +148,12 @@ impl Membership {
 #[cfg(feature = "abstraction")]
 impl Membership {
     /// The period of the roll is numbered anew.
-    pub fn renumber(&mut self, number: impl FnOnce(u32) -> u32) {
+    pub(super) fn renumber(&mut self, number: impl FnOnce(u32) -> u32) {
         self.roll.called = number(self.roll.called);
     }
 
     /// The robots that have been seen out of sight, or whose bodies lie about.
-    pub fn seen(&self) -> impl Iterator<Item = NodeId> {
+    pub(super) fn seen(&self) -> impl Iterator<Item = NodeId> {
         let seen = self.out_of_sight.iter().chain(self.wrecks.iter().copied());
         seen.map(|wreck| wreck.robot)
     }
@@ -162,27 +162,27 @@ impl Membership {
 #[cfg(test)]
 impl Membership {
     /// The newest roll is this.
-    pub fn is_told(&mut self, roll: Roll) {
+    pub(super) fn is_told(&mut self, roll: Roll) {
         self.roll = roll;
     }
 
     /// The newest roll is called in this period.
-    pub fn is_called_in(&mut self, period: u32) {
+    pub(super) fn is_called_in(&mut self, period: u32) {
         self.roll.called = period;
     }
 
     /// The newest roll names these as absent.
-    pub fn lacks(&mut self, absent: Absent) {
+    pub(super) fn lacks(&mut self, absent: Absent) {
         self.roll.absent = Arc::new(absent);
     }
 
     /// These bodies lie about.
-    pub fn finds(&mut self, wrecks: Vec<Wreck>) {
+    pub(super) fn finds(&mut self, wrecks: Vec<Wreck>) {
         self.wrecks = Arc::new(wrecks);
     }
 
     /// The robots that have been noted.
-    pub fn noted(&self) -> Vec<Wreck> {
+    pub(super) fn noted(&self) -> Vec<Wreck> {
         self.out_of_sight.iter().collect()
     }
 }

@@ -39,7 +39,7 @@ impl Default for Notices {
 
 impl Notices {
     /// Merges what a neighbour knows, except its bulletin and its announcement.
-    pub fn merge(&mut self, beacon: &Beacon, site: &Site) {
+    pub(super) fn merge(&mut self, beacon: &Beacon, site: &Site) {
         self.longest_wait = site.longer_wait(self.longest_wait, beacon.longest_wait);
         self.is_stretched |= beacon.stretched;
         beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
@@ -47,82 +47,82 @@ impl Notices {
     }
 
     /// The newest notice is the newer one of two.
-    pub fn merge_bulletin(&mut self, received: &Bulletin) {
+    pub(super) fn merge_bulletin(&mut self, received: &Bulletin) {
         self.bulletin.merge(received);
     }
 
     /// The newest notice, with its identity.
-    pub const fn bulletin(&self) -> &Bulletin {
+    pub(super) const fn bulletin(&self) -> &Bulletin {
         &self.bulletin
     }
 
     /// The newest notice is this.
-    pub fn take_up(&mut self, bulletin: Bulletin) {
+    pub(super) fn take_up(&mut self, bulletin: Bulletin) {
         self.bulletin = bulletin;
     }
 
     /// The node issues the next notice.
-    pub fn issue(&mut self, issuer: NodeId, notice: Notice) {
+    pub(super) fn issue(&mut self, issuer: NodeId, notice: Notice) {
         self.bulletin = self.bulletin.next(issuer, Shared::new(notice));
     }
 
     /// The announcement that the node follows, with its identity.
-    pub const fn announced(&self) -> Option<&Announced> {
+    pub(super) const fn announced(&self) -> Option<&Announced> {
         self.announced.as_ref()
     }
 
     /// The announcement that the node follows.
-    pub fn announcement(&self) -> Option<&Announcement> {
+    pub(super) fn announcement(&self) -> Option<&Announcement> {
         self.announced.as_ref().map(|(_, announcement)| &**announcement)
     }
 
     /// The identity of that announcement.
-    pub fn announcement_id(&self) -> Option<NoticeId> {
+    pub(super) fn announcement_id(&self) -> Option<NoticeId> {
         self.announced.as_ref().map(|&(id, _)| id)
     }
 
     /// The node follows this announcement from now on.
-    pub fn learn(&mut self, announced: Announced) {
+    pub(super) fn learn(&mut self, announced: Announced) {
         (self.announced, self.forgetful) = (Some(announced), Arc::default());
     }
 
     /// The robots that have elected by the announcement and restarted since.
-    pub const fn forgetful(&self) -> &Arc<IdSet> {
+    pub(super) const fn forgetful(&self) -> &Arc<IdSet> {
         &self.forgetful
     }
 
     /// The robot has lost its state in the election by the announcement that it follows.
-    pub fn forget_election(&mut self, robot: NodeId) {
+    pub(super) fn forget_election(&mut self, robot: NodeId) {
         self.forgetful = Arc::new(IdSet::singleton(robot));
     }
 
     /// The tasks that are over.
-    pub const fn closed(&self) -> &Arc<IdSet> {
+    pub(super) const fn closed(&self) -> &Arc<IdSet> {
         &self.closed
     }
 
     /// A task is over.
-    pub fn close(&mut self, task: usize) {
+    pub(super) fn close(&mut self, task: usize) {
         Arc::make_mut(&mut self.closed).insert(task);
     }
 
     /// Whether links of the tree may be as long as they ever are.
-    pub const fn is_stretched(&self) -> bool {
+    pub(super) const fn is_stretched(&self) -> bool {
         self.is_stretched
     }
 
     /// From now on links of the tree may be as long as they ever are.
-    pub const fn stretch(&mut self) {
+    pub(super) const fn stretch(&mut self) {
         self.is_stretched = true;
     }
 
     /// For how many rounds news may be under way.
-    pub const fn longest_wait(&self) -> usize {
+    pub(super) const fn longest_wait(&self) -> usize {
         self.longest_wait
     }
 
     /// News may be under way for this many rounds.
-    pub const fn wait_for(&mut self, rounds: usize) {
+    pub(super) const fn wait_for(&mut self, rounds: usize) {
         self.longest_wait = rounds;
     }
 }
@@ -130,17 +130,17 @@ impl Notices {
 #[cfg(test)]
 impl Notices {
     /// The node follows this announcement, or none.
-    pub fn follow(&mut self, announced: Option<Announced>) {
+    pub(super) fn follow(&mut self, announced: Option<Announced>) {
         self.announced = announced;
     }
 
     /// The node issues a notice that supersedes those that others issue meanwhile.
-    pub fn supersede(&mut self, issuer: NodeId, notice: Notice) {
+    pub(super) fn supersede(&mut self, issuer: NodeId, notice: Notice) {
         self.bulletin = self.bulletin.superseding(issuer, Shared::new(notice));
     }
 
     /// Links may be as long as they ever are, or may not.
-    pub const fn set_stretched(&mut self, is_stretched: bool) {
+    pub(super) const fn set_stretched(&mut self, is_stretched: bool) {
         self.is_stretched = is_stretched;
     }
 }

@@ -42,13 +42,13 @@ impl Neighbour {
 
 impl Audience {
     /// The beacon received last of each node in range, by their senders.
-    pub fn beacons(&self) -> impl Iterator<Item = &Beacon> {
+    pub(super) fn beacons(&self) -> impl Iterator<Item = &Beacon> {
         self.table.iter().map(|neighbour| &*neighbour.beacon)
     }
 
     /// Takes in a beacon; returns whether it is news. Beacons of a round mostly come in the order of their senders, and
     /// have no news.
-    pub fn receive(&mut self, beacon: &Arc<Beacon>) -> bool {
+    pub(super) fn receive(&mut self, beacon: &Arc<Beacon>) -> bool {
         let expected = self.table.get(self.expected);
         let place = match expected.is_some_and(|known| Arc::ptr_eq(&known.beacon, beacon)) {
             true => Ok(self.expected),
@@ -64,12 +64,12 @@ impl Audience {
     }
 
     /// A control period begins, in which all nodes send again.
-    pub fn expect_all(&mut self) {
+    pub(super) fn expect_all(&mut self) {
         self.table.iter_mut().for_each(|neighbour| neighbour.is_silent = true);
     }
 
     /// All nodes in range have sent in this control period: forgets those that were silent. Returns whether there were any.
-    pub fn forget_silent(&mut self) -> bool {
+    pub(super) fn forget_silent(&mut self) -> bool {
         let before = self.table.len();
         self.table.retain(|neighbour| !neighbour.is_silent);
         self.table.len() < before
@@ -79,7 +79,7 @@ impl Audience {
 #[cfg(any(test, feature = "abstraction"))]
 impl Audience {
     /// Forgets what all nodes have sent.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.table.clear();
     }
 }

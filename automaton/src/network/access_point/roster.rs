@@ -31,7 +31,7 @@ pub(super) struct Roster {
 
 impl Roster {
     /// Attendance is kept from now on, of those that are reported at present.
-    pub fn keep(&mut self, robots: usize, validity: u32) {
+    pub(super) fn keep(&mut self, robots: usize, validity: u32) {
         let Roster { attendees, present, .. } = self;
         attendees.get_or_insert_with(|| {
             let new = |robot| match present.contains(robot) {
@@ -43,7 +43,7 @@ impl Roster {
     }
 
     /// Whether attendance is kept.
-    pub const fn is_kept(&self) -> bool {
+    pub(super) const fn is_kept(&self) -> bool {
         self.attendees.is_some()
     }
 
@@ -51,21 +51,21 @@ impl Roster {
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
-    pub fn review(&mut self, automaton: &AttendanceAutomaton) -> Result<(), TransitionError> {
+    pub(super) fn review(&mut self, automaton: &AttendanceAutomaton) -> Result<(), TransitionError> {
         self.attendees_mut().try_for_each(|attendee| attendee.review(automaton))
     }
 
     /// Initialises attendance from the roll that is received first after a start. Robots that are absent in it stay
     /// absent; those that have not been received here are suspended, because for how long they have been silent is not
     /// known.
-    pub fn recall(&mut self, roll: &Roll, is_valid: bool) {
+    pub(super) fn recall(&mut self, roll: &Roll, is_valid: bool) {
         for (robot, attendee) in self.attendees_mut().enumerate() {
             attendee.recall(roll.absent.standing_of(robot), is_valid);
         }
     }
 
     /// Takes in which robots are attached to an access point, and which are received and know no way to one.
-    pub fn attend(&mut self, reports: &Reports) {
+    pub(super) fn attend(&mut self, reports: &Reports) {
         let Some(attendees) = &mut self.attendees else { return };
         for robot in reports.below.iter() {
             if let Some(attendee) = attendees.get_mut(robot) {
@@ -80,7 +80,7 @@ impl Roster {
     }
 
     /// A round is over in which these robots are connected.
-    pub fn update(&mut self, connected: IdSet) {
+    pub(super) fn update(&mut self, connected: IdSet) {
         let present = if self.is_kept() { self.attending() } else { connected.clone() };
         let is_as_connected = |robot| self.connected.contains(robot) == connected.contains(robot);
         let is_same = *self.present == present && present.iter().all(is_as_connected);
@@ -90,33 +90,33 @@ impl Roster {
     }
 
     /// A round is over in which nothing was received that could change it.
-    pub const fn pass_round(&mut self) {
+    pub(super) const fn pass_round(&mut self) {
         self.settled_rounds += 1;
     }
 
     /// For how many rounds it has stayed the same.
-    pub const fn settled_rounds(&self) -> usize {
+    pub(super) const fn settled_rounds(&self) -> usize {
         self.settled_rounds
     }
 
     /// Robots take part that do not elect by an announcement to `electors`.
-    pub fn note_joiners(&mut self, electors: &IdSet) {
+    pub(super) fn note_joiners(&mut self, electors: &IdSet) {
         let attending = self.attending();
         self.joiners.extend(attending.iter().filter(|&robot| !electors.contains(robot)));
     }
 
     /// Another announcement is received.
-    pub fn forget_joiners(&mut self) {
+    pub(super) fn forget_joiners(&mut self) {
         self.joiners = IdSet::default();
     }
 
     /// The robots that have joined since the newest announcement.
-    pub const fn joiners(&self) -> &IdSet {
+    pub(super) const fn joiners(&self) -> &IdSet {
         &self.joiners
     }
 
     /// The robots that take part now. The roll may have been called since the roster was made up.
-    pub fn present_now(&self) -> Arc<IdSet> {
+    pub(super) fn present_now(&self) -> Arc<IdSet> {
         match self.is_kept() {
             true => Arc::new(self.attending()),
             false => Arc::clone(&self.present),
@@ -124,32 +124,32 @@ impl Roster {
     }
 
     /// The robots that took part when the roster was made up.
-    pub const fn present(&self) -> &Arc<IdSet> {
+    pub(super) const fn present(&self) -> &Arc<IdSet> {
         &self.present
     }
 
     /// The robots that are attached to an access point.
-    pub const fn connected(&self) -> &Arc<IdSet> {
+    pub(super) const fn connected(&self) -> &Arc<IdSet> {
         &self.connected
     }
 
     /// Whether all robots that take part are attached to an access point.
-    pub fn is_connected(&self) -> bool {
+    pub(super) fn is_connected(&self) -> bool {
         self.connected.includes(&self.present)
     }
 
     /// Whether robots are not in it that may not have begun yet.
-    pub fn awaits_robots(&self) -> bool {
+    pub(super) fn awaits_robots(&self) -> bool {
         self.robots_that(Attendee::may_begin).any(|robot| !self.present.contains(robot))
     }
 
     /// The attendance of a robot, where it is kept.
-    pub fn attendee(&self, robot: NodeId) -> Option<&Attendee> {
+    pub(super) fn attendee(&self, robot: NodeId) -> Option<&Attendee> {
         self.attendees.as_ref()?.get(robot)
     }
 
     /// The robots whose attendance is such.
-    pub fn robots_that(
+    pub(super) fn robots_that(
         &self,
         are_such: impl Fn(&Attendee) -> bool,
     ) -> impl Iterator<Item = NodeId> {
@@ -158,22 +158,22 @@ impl Roster {
     }
 
     /// The robots that take part.
-    pub fn attending(&self) -> IdSet {
+    pub(super) fn attending(&self) -> IdSet {
         self.robots_that(Attendee::takes_part).collect()
     }
 
     /// The robots that have been attached and are gone.
-    pub fn gone(&self) -> Vec<NodeId> {
+    pub(super) fn gone(&self) -> Vec<NodeId> {
         self.robots_that(|it| it.is_known() && it.is_gone()).collect()
     }
 
     /// The robots that do not take part.
-    pub fn absent_robots(&self) -> impl Iterator<Item = NodeId> {
+    pub(super) fn absent_robots(&self) -> impl Iterator<Item = NodeId> {
         self.robots_that(|it| it.location() != Attendance::Present)
     }
 
     /// The robots that do not take part, for the next roll.
-    pub fn absent(&self) -> Absent {
+    pub(super) fn absent(&self) -> Absent {
         let are = |such: &[Attendance]| {
             self.robots_that(|it| such.contains(&it.location())).collect::<IdSet>()
         };
@@ -184,14 +184,14 @@ impl Roster {
     }
 
     /// Other access points receive these reports of the robots that are attached here.
-    pub fn report(&mut self, here: Reports) {
+    pub(super) fn report(&mut self, here: Reports) {
         let Reports { below, strays, serves } = here;
         self.reports = [below, strays, serves].map(Arc::new);
     }
 
     /// What other access points receive: the robots that are attached here, those that know no way, and the tasks that
     /// all of them service.
-    pub const fn reports(&self) -> &[Arc<IdSet>; 3] {
+    pub(super) const fn reports(&self) -> &[Arc<IdSet>; 3] {
         &self.reports
     }
 
@@ -204,13 +204,13 @@ impl Roster {
 impl Roster {
     /// What decides on the attendance of each robot from now on, and which robots take part and are connected.
     #[expect(clippy::type_complexity, reason = "it is compared and shown as a whole")]
-    pub fn account(&self) -> (Vec<(Attendance, bool, bool, u32, u32)>, &IdSet, &IdSet) {
+    pub(super) fn account(&self) -> (Vec<(Attendance, bool, bool, u32, u32)>, &IdSet, &IdSet) {
         let attendees = self.attendees.iter().flatten().map(Attendee::account).collect();
         (attendees, &self.present, &self.connected)
     }
 
     /// No robot is waited for that has not begun.
-    pub fn have_been_awaited(&mut self) {
+    pub(super) fn have_been_awaited(&mut self) {
         self.attendees_mut().for_each(Attendee::has_been_awaited);
     }
 }
@@ -218,24 +218,24 @@ impl Roster {
 #[cfg(test)]
 impl Roster {
     /// The attendance of a robot is this.
-    pub fn stands(&mut self, robot: NodeId, attendee: Attendee) {
+    pub(super) fn stands(&mut self, robot: NodeId, attendee: Attendee) {
         if let Some(known) = self.attendees_mut().nth(robot) {
             *known = attendee;
         }
     }
 
     /// All robots are attached to an access point.
-    pub fn attend_all(&mut self) {
+    pub(super) fn attend_all(&mut self) {
         self.attendees_mut().for_each(Attendee::attend);
     }
 
     /// These robots are connected.
-    pub fn connects(&mut self, robots: IdSet) {
+    pub(super) fn connects(&mut self, robots: IdSet) {
         self.connected = Arc::new(robots);
     }
 
     /// It has stayed the same for this many rounds.
-    pub const fn has_settled(&mut self, rounds: usize) {
+    pub(super) const fn has_settled(&mut self, rounds: usize) {
         self.settled_rounds = rounds;
     }
 }

@@ -23,7 +23,7 @@ pub(super) struct Schedule {
 
 impl Schedule {
     /// The first sample is due.
-    pub fn due(clock: f64) -> Self {
+    pub(super) fn due(clock: f64) -> Self {
         Schedule {
             rounds: Current::new(Rounds::Resting(Resting)),
             acts: &[],
@@ -34,26 +34,26 @@ impl Schedule {
         }
     }
 
-    pub const fn current(&self) -> &Current<Rounds> {
+    pub(super) const fn current(&self) -> &Current<Rounds> {
         &self.rounds
     }
 
-    pub const fn current_mut(&mut self) -> &mut Current<Rounds> {
+    pub(super) const fn current_mut(&mut self) -> &mut Current<Rounds> {
         &mut self.rounds
     }
 
     /// A row has been taken, with this work.
-    pub const fn carry_out(&mut self, acts: RoundActs) {
+    pub(super) const fn carry_out(&mut self, acts: RoundActs) {
         self.acts = acts;
     }
 
     /// The work of the row that has been taken.
-    pub fn take_acts(&mut self) -> RoundActs {
+    pub(super) fn take_acts(&mut self) -> RoundActs {
         std::mem::take(&mut self.acts)
     }
 
     /// The number of this round of beacons; 0 between samples.
-    pub fn round(&self) -> usize {
+    pub(super) fn round(&self) -> usize {
         match *self.rounds {
             Rounds::Listening(Listening { round }) => round,
             Rounds::Resting(_) => 0,
@@ -61,33 +61,33 @@ impl Schedule {
     }
 
     /// Whether all nodes have sent in this control period: each sends in the first rounds.
-    pub fn have_all_sent(&self) -> bool {
+    pub(super) fn have_all_sent(&self) -> bool {
         // The round that has begun is one more than those that are over; after the last, none has.
         !(1..=ROUNDS_TO_BE_HEARD).contains(&self.round())
     }
 
     /// The number of the control period.
-    pub const fn period(&self) -> u32 {
+    pub(super) const fn period(&self) -> u32 {
         self.period
     }
 
     /// Whether no other node has been received yet.
-    pub const fn is_new(&self) -> bool {
+    pub(super) const fn is_new(&self) -> bool {
         self.is_new
     }
 
     /// Whether another node has begun the next control period.
-    pub const fn is_behind(&self) -> bool {
+    pub(super) const fn is_behind(&self) -> bool {
         self.is_behind
     }
 
     /// Seconds since the last sample.
-    pub const fn clock(&self) -> f64 {
+    pub(super) const fn clock(&self) -> f64 {
         self.clock
     }
 
     /// Seconds until the access point has something to do, where samples are `period` seconds apart.
-    pub fn time_to_tick(&self, period: f64) -> f64 {
+    pub(super) fn time_to_tick(&self, period: f64) -> f64 {
         match self.round() == 0 && !self.is_behind {
             true => (period - self.clock).max(0.0),
             false => 0.0,
@@ -96,24 +96,24 @@ impl Schedule {
 
     /// Another node is in a later control period: an access point that has just started joins it, and any other begins
     /// it as soon as its own is over.
-    pub const fn receive_later_period(&mut self, period: u32) {
+    pub(super) const fn receive_later_period(&mut self, period: u32) {
         self.is_behind = !self.is_new;
         self.period = period - self.is_behind as u32;
     }
 
     /// Time passes.
-    pub const fn pass(&mut self, duration: f64) {
+    pub(super) const fn pass(&mut self, duration: f64) {
         self.clock += duration;
     }
 
     /// The next control period begins.
-    pub const fn begin_period(&mut self) {
+    pub(super) const fn begin_period(&mut self) {
         (self.clock, self.is_behind) = (0.0, false);
         self.period = self.period.saturating_add(1);
     }
 
     /// A round is over.
-    pub fn end_round(&mut self) {
+    pub(super) fn end_round(&mut self) {
         self.is_new &= self.round() > 0;
     }
 }
@@ -121,7 +121,7 @@ impl Schedule {
 #[cfg(any(test, feature = "abstraction"))]
 impl Schedule {
     /// This control period is under way; others have been received before, or not.
-    pub const fn join(&mut self, period: u32, is_new: bool) {
+    pub(super) const fn join(&mut self, period: u32, is_new: bool) {
         (self.period, self.is_new) = (period, is_new);
     }
 }

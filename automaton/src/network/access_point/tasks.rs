@@ -47,7 +47,7 @@ impl TaskRecord {
     }
 
     /// Whether it has been serviced for at least this many control periods, and is reported now.
-    pub fn has_lasted(self, periods: u32) -> bool {
+    pub(super) fn has_lasted(self, periods: u32) -> bool {
         self.age >= periods && self.silence == 0
     }
 }
@@ -69,137 +69,137 @@ impl Default for Tasks {
 }
 
 impl Tasks {
-    pub const fn current(&self) -> &Current<Serving> {
+    pub(super) const fn current(&self) -> &Current<Serving> {
         &self.service
     }
 
-    pub const fn current_mut(&mut self) -> &mut Current<Serving> {
+    pub(super) const fn current_mut(&mut self) -> &mut Current<Serving> {
         &mut self.service
     }
 
     /// Whether a leader or a recruit is being elected.
-    pub fn is_electing(&self) -> bool {
+    pub(super) fn is_electing(&self) -> bool {
         matches!(*self.service, Serving::Electing(_))
     }
 
     /// Rows of the service read this bulletin from now on, or none.
-    pub fn offer(&mut self, newest: Option<Bulletin>) {
+    pub(super) fn offer(&mut self, newest: Option<Bulletin>) {
         self.newest = newest;
     }
 
     /// The bulletin that has been received and not taken up.
-    pub const fn newest(&self) -> Option<&Bulletin> {
+    pub(super) const fn newest(&self) -> Option<&Bulletin> {
         self.newest.as_ref()
     }
 
     /// The notice of that bulletin.
-    pub fn newest_notice(&self) -> Option<&Notice> {
+    pub(super) fn newest_notice(&self) -> Option<&Notice> {
         self.newest.as_ref().map(|bulletin| &**bulletin.notice())
     }
 
     /// The user requests these tasks; a late copy of an earlier request changes nothing.
-    pub fn request(&mut self, order: &Order) {
+    pub(super) fn request(&mut self, order: &Order) {
         if !self.requested.as_ref().is_some_and(|known| order.is_older_than(known)) {
             self.requested = Some(order.clone());
         }
     }
 
     /// What the user requests.
-    pub const fn requested(&self) -> Option<&Order> {
+    pub(super) const fn requested(&self) -> Option<&Order> {
         self.requested.as_ref()
     }
 
     /// The tasks that the user requests, by number.
-    pub fn errands(&self) -> impl Iterator<Item = (usize, Errand)> {
+    pub(super) fn errands(&self) -> impl Iterator<Item = (usize, Errand)> {
         let tasks = self.requested.iter().flat_map(|order| order.tasks.iter().copied());
         tasks.enumerate()
     }
 
     /// Where a task is, if the user requests it.
-    pub fn position_of(&self, task: usize) -> Option<Point> {
+    pub(super) fn position_of(&self, task: usize) -> Option<Point> {
         Some(self.requested.as_ref()?.tasks.get(task)?.position)
     }
 
     /// Whether the user has taken a task back.
-    pub fn is_withdrawn(&self, task: usize) -> bool {
+    pub(super) fn is_withdrawn(&self, task: usize) -> bool {
         let errand = self.requested.as_ref().and_then(|order| order.tasks.get(task));
         errand.is_some_and(|errand| errand.withdrawn)
     }
 
     /// A task is serviced from now on.
-    pub fn begin_service(&mut self, task: usize) {
+    pub(super) fn begin_service(&mut self, task: usize) {
         self.known.insert(task, TaskRecord::default());
     }
 
     /// The tasks before this one have been serviced, or are over.
-    pub fn expect_before(&mut self, task: usize) {
+    pub(super) fn expect_before(&mut self, task: usize) {
         (0..task).for_each(|before| {
             self.known.entry(before).or_default();
         });
     }
 
     /// The service of a task is reported.
-    pub fn attend(&mut self, task: usize) {
+    pub(super) fn attend(&mut self, task: usize) {
         self.known.entry(task).or_default().silence = 0;
     }
 
     /// Another control period begins.
-    pub fn pass_period(&mut self) {
+    pub(super) fn pass_period(&mut self) {
         self.known.values_mut().for_each(TaskRecord::pass_period);
     }
 
     /// The record of a task that has been serviced.
-    pub fn record(&self, task: usize) -> Option<TaskRecord> {
+    pub(super) fn record(&self, task: usize) -> Option<TaskRecord> {
         self.known.get(&task).copied()
     }
 
     /// Each task that has been serviced, by number.
-    pub fn records(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
+    pub(super) fn records(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
         self.known.iter().map(|(&task, &known)| (task, known))
     }
 
     /// A number above those of all tasks that have been serviced.
-    pub fn end(&self) -> usize {
+    pub(super) fn end(&self) -> usize {
         self.known.last_key_value().map_or(0, |(task, _)| task + 1)
     }
 
     /// No robot can service a task.
-    pub fn give_up(&mut self, task: usize, outcome: Outcome) {
+    pub(super) fn give_up(&mut self, task: usize, outcome: Outcome) {
         self.given_up.push((task, outcome));
     }
 
     /// The tasks that no robot could service, in this order, and how each of them ended.
-    pub fn given_up(&self) -> &[(usize, Outcome)] {
+    pub(super) fn given_up(&self) -> &[(usize, Outcome)] {
         &self.given_up
     }
 
     /// A task is announced in this control period.
-    pub const fn announce_in(&mut self, period: u32) {
+    pub(super) const fn announce_in(&mut self, period: u32) {
         (self.announced_in, self.wanted_in) = (period, None);
     }
 
     /// A task that had been announced is over in this control period.
-    pub const fn close_in(&mut self, period: u32) {
+    pub(super) const fn close_in(&mut self, period: u32) {
         self.closed_in = Some(period);
     }
 
     /// The task that was announced last is reported as given up for lack of robots.
-    pub fn want_in(&mut self, period: u32) {
+    pub(super) fn want_in(&mut self, period: u32) {
         self.wanted_in.get_or_insert(period);
     }
 
     /// Whether that task has been reported as given up for lack of robots.
-    pub const fn wants_robots(&self) -> bool {
+    pub(super) const fn wants_robots(&self) -> bool {
         self.wanted_in.is_some()
     }
 
     /// Whether robots were not redundant when the last task was announced that may be now, as a task has ended.
-    pub fn has_freed(&self, longest_wait: usize) -> bool {
+    pub(super) fn has_freed(&self, longest_wait: usize) -> bool {
         self.closed_in.is_some_and(|end| self.announced_in < retired_by(end, longest_wait))
     }
 
     /// Whether these, or the robots of a team that has given up, may have yet to become redundant.
-    pub fn awaits_retirements(&self, longest_wait: usize, period: u32) -> bool {
+    pub(super) fn awaits_retirements(&self, longest_wait: usize, period: u32) -> bool {
         let ends = self.closed_in.into_iter().chain(self.wanted_in);
         let is_awaited = |end| period < retired_by(end, longest_wait);
         self.has_freed(longest_wait) && ends.max().is_some_and(is_awaited)
@@ -216,12 +216,12 @@ fn retired_by(end: u32, longest_wait: usize) -> u32 {
 #[cfg(test)]
 impl Tasks {
     /// The service is there.
-    pub fn is_at(&mut self, service: Serving) {
+    pub(super) fn is_at(&mut self, service: Serving) {
         *self = Tasks { service: Current::new(service), ..self.clone() };
     }
 
     /// The record of a task is this.
-    pub fn has_record(&mut self, task: usize, record: TaskRecord) {
+    pub(super) fn has_record(&mut self, task: usize, record: TaskRecord) {
         self.known.insert(task, record);
     }
 }

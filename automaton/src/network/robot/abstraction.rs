@@ -33,7 +33,7 @@ pub(in super::super) struct Numbers {
 
 impl Numbers {
     /// The number of a control period; one that is `oldest` or more periods old is just as old.
-    pub fn of(self, period: u32, oldest: u32) -> u32 {
+    pub(crate) fn of(self, period: u32, oldest: u32) -> u32 {
         period.saturating_sub(self.passed).max(self.now.saturating_sub(oldest))
     }
 }

@@ -47,7 +47,7 @@ impl Bodies {
     }
 
     /// Where they are.
-    pub fn places(&self) -> impl Iterator<Item = Point> {
+    pub(super) fn places(&self) -> impl Iterator<Item = Point> {
         self.0.iter().map(|body| body.place)
     }
 

@@ -26,7 +26,7 @@ pub(super) struct Body {
 
 impl Body {
     /// At rest.
-    pub fn at(position: Point, clock: f64) -> Self {
+    pub(super) fn at(position: Point, clock: f64) -> Self {
         Body {
             position,
             velocity: Vector::zeros(),
@@ -38,56 +38,56 @@ impl Body {
     }
 
     /// x.
-    pub const fn position(&self) -> Point {
+    pub(super) const fn position(&self) -> Point {
         self.position
     }
 
     /// τ: seconds since the last sample.
-    pub const fn clock(&self) -> f64 {
+    pub(super) const fn clock(&self) -> f64 {
         self.clock
     }
 
     /// Control periods without progress.
-    pub const fn still_periods(&self) -> u32 {
+    pub(super) const fn still_periods(&self) -> u32 {
         self.still_periods
     }
 
     /// What it waits for has changed.
-    pub const fn count_still_periods_anew(&mut self) {
+    pub(super) const fn count_still_periods_anew(&mut self) {
         self.still_periods = 0;
     }
 
     /// Whether u is not 0.
-    pub fn is_moving(&self) -> bool {
+    pub(super) fn is_moving(&self) -> bool {
         self.velocity != Vector::zeros()
     }
 
     /// It has measured that it is at `position`.
-    pub const fn correct(&mut self, position: Point) {
+    pub(super) const fn correct(&mut self, position: Point) {
         (self.position, self.arrival) = (position, position);
     }
 
     /// It stands at `position`, and has made no progress for this many control periods.
-    pub fn stand_at(&mut self, position: Point, still_periods: u32) {
+    pub(super) fn stand_at(&mut self, position: Point, still_periods: u32) {
         self.correct(position);
         self.resting_places = VecDeque::from([position]);
         self.still_periods = still_periods;
     }
 
     /// A control period begins: it moves no more.
-    pub fn restart_clock(&mut self) {
+    pub(super) fn restart_clock(&mut self) {
         self.velocity = Vector::zeros();
         self.clock = 0.0;
     }
 
     /// Seconds until its move is over, which takes a control period.
-    pub const fn time_to_arrival(&self, period: f64) -> f64 {
+    pub(super) const fn time_to_arrival(&self, period: f64) -> f64 {
         (period - self.clock).max(0.0)
     }
 
     /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; after Δt, a control period, the robot is where
     /// its certified move ends, to the last bit.
-    pub fn advance(&mut self, duration: f64, period: f64) {
+    pub(super) fn advance(&mut self, duration: f64, period: f64) {
         self.clock += duration;
         self.position = match self.time_to_arrival(period) > 0.0 {
             true => self.position + self.velocity * duration,
@@ -97,7 +97,7 @@ impl Body {
 
     /// It moves along a segment in a control period of this many seconds. Moving back and forth between a few places,
     /// each within `leash` of another, counts as standing still, too.
-    pub fn set_off(&mut self, segment: Segment, leash: f64, period: f64) {
+    pub(super) fn set_off(&mut self, segment: Segment, leash: f64, period: f64) {
         if self.resting_places.iter().all(|place| (segment.to - place).norm() > leash) {
             self.resting_places.truncate(RESTING_PLACES - 1);
             self.resting_places.push_front(segment.to);
@@ -110,7 +110,7 @@ impl Body {
     }
 
     /// It stays where it is until the next sample, which every certified move allows.
-    pub fn stay(&mut self) {
+    pub(super) fn stay(&mut self) {
         self.velocity = Vector::zeros();
         self.arrival = self.position;
     }
@@ -119,17 +119,17 @@ impl Body {
 #[cfg(test)]
 impl Body {
     /// It has been carried to `position`.
-    pub fn is_at(&mut self, position: Point) {
+    pub(super) fn is_at(&mut self, position: Point) {
         self.correct(position);
     }
 
     /// It has set off with this velocity.
-    pub fn is_moving_by(&mut self, velocity: Vector) {
+    pub(super) fn is_moving_by(&mut self, velocity: Vector) {
         (self.clock, self.velocity) = (0.0, velocity);
     }
 
     /// It has made no progress for this many control periods.
-    pub fn waits(&mut self, still_periods: u32) {
+    pub(super) fn waits(&mut self, still_periods: u32) {
         self.still_periods = still_periods;
     }
 }

@@ -25,22 +25,22 @@ pub(super) struct Context<'a> {
 
 impl Context<'_> {
     /// Whether what has been derived is kept until something that it is derived from changes.
-    pub fn caches(self) -> bool {
+    pub(super) fn caches(self) -> bool {
         self.site.settings.caching
     }
 
     /// Whether what is left out is verified in this period.
-    pub const fn verifies(self) -> bool {
+    pub(super) const fn verifies(self) -> bool {
         self.period.is_multiple_of(PERIODS_PER_CHECK)
     }
 
     /// Whether work that is left out would change nothing, where that is verified.
-    pub fn may_skip(self, changes_nothing: impl FnOnce() -> bool) -> bool {
+    pub(super) fn may_skip(self, changes_nothing: impl FnOnce() -> bool) -> bool {
         !self.verifies() || changes_nothing()
     }
 
     /// Whether a node is a robot, and no access point.
-    pub fn is_robot(self, node: NodeId) -> bool {
+    pub(super) fn is_robot(self, node: NodeId) -> bool {
         node < self.site.robots
     }
 }

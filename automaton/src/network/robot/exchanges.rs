@@ -61,40 +61,40 @@ impl Default for Exchanges {
 
 impl Exchanges {
     /// The robot may have made this many offers before it began.
-    pub const fn forget_offers(&mut self, forgotten_offers: u32) {
+    pub(super) const fn forget_offers(&mut self, forgotten_offers: u32) {
         self.forgotten_offers = forgotten_offers;
     }
 
     /// How many offers the robot may have made before it began.
-    pub const fn forgotten_offers(&self) -> u32 {
+    pub(super) const fn forgotten_offers(&self) -> u32 {
         self.forgotten_offers
     }
 
-    pub const fn current(&self) -> &Current<Exchange> {
+    pub(super) const fn current(&self) -> &Current<Exchange> {
         &self.exchange
     }
 
-    pub const fn current_mut(&mut self) -> &mut Current<Exchange> {
+    pub(super) const fn current_mut(&mut self) -> &mut Current<Exchange> {
         &mut self.exchange
     }
 
     /// The robot's offer and reply.
-    pub fn offers(&self) -> &Offers<Duty> {
+    pub(super) fn offers(&self) -> &Offers<Duty> {
         self.exchange.offers()
     }
 
     /// The robot in the way with which the robot could exchange duties.
-    pub const fn partner(&self) -> Option<NodeId> {
+    pub(super) const fn partner(&self) -> Option<NodeId> {
         self.partner
     }
 
     /// The robot could exchange duties with this one.
-    pub const fn choose_partner(&mut self, partner: Option<NodeId>) {
+    pub(super) const fn choose_partner(&mut self, partner: Option<NodeId>) {
         self.partner = partner;
     }
 
     /// Carries out an effect of a transition, when the mission has come this far.
-    pub fn carry_out(&mut self, effect: ExchangeEffect, progress: Progress) {
+    pub(super) fn carry_out(&mut self, effect: ExchangeEffect, progress: Progress) {
         match effect {
             ExchangeEffect::Answered(mover, number) => {
                 self.answered.insert(mover, Answered { number, in_vain: false });
@@ -115,12 +115,12 @@ impl Exchanges {
     }
 
     /// The duty that the robot takes over in this jump, and from which robot.
-    pub const fn take_duty(&mut self) -> Option<(Duty, NodeId)> {
+    pub(super) const fn take_duty(&mut self) -> Option<(Duty, NodeId)> {
         self.taking_over.take()
     }
 
     /// The robot has exchanged duties with this one, when the mission has come this far.
-    pub fn conclude(&mut self, partner: NodeId, progress: Progress) {
+    pub(super) fn conclude(&mut self, partner: NodeId, progress: Progress) {
         self.past(progress).exchanged.push(partner);
     }
 
@@ -132,18 +132,18 @@ impl Exchanges {
 
     /// The robots with which the robot has exchanged duties since the mission has come this far, and those that have
     /// refused.
-    pub fn past_offers(&self, progress: Progress) -> (&[NodeId], &[NodeId]) {
+    pub(super) fn past_offers(&self, progress: Progress) -> (&[NodeId], &[NodeId]) {
         let past = self.past.as_ref().filter(|past| past.since == progress);
         past.map_or((&[], &[]), |past| (&past.exchanged, &past.refused))
     }
 
     /// The number of the offer of this mover that has been answered last.
-    pub fn answered(&self, mover: NodeId) -> Option<u32> {
+    pub(super) fn answered(&self, mover: NodeId) -> Option<u32> {
         self.answered.get(&mover).map(|answered| answered.number)
     }
 
     /// Whether this offer has been refused, and the mover was gone before it received that.
-    pub fn is_refused_in_vain(&self, mover: NodeId, offer: &Offer<Duty>) -> bool {
+    pub(super) fn is_refused_in_vain(&self, mover: NodeId, offer: &Offer<Duty>) -> bool {
         let answered = self.answered.get(&mover);
         answered.is_some_and(|it| it.in_vain && it.number == offer.number)
     }
@@ -152,7 +152,7 @@ impl Exchanges {
 #[cfg(feature = "abstraction")]
 impl Exchanges {
     /// What decides on the exchanges ahead, beside those that are past.
-    pub fn account(&self) -> String {
+    pub(super) fn account(&self) -> String {
         format!("{:?} {:?}", &*self.exchange, self.answered)
     }
 }
@@ -160,7 +160,7 @@ impl Exchanges {
 #[cfg(test)]
 impl Exchanges {
     /// The robot is in this state.
-    pub fn is_at(&mut self, exchange: Exchange) {
+    pub(super) fn is_at(&mut self, exchange: Exchange) {
         *self = Exchanges { exchange: Current::new(exchange), ..self.clone() };
     }
 }

@@ -79,7 +79,7 @@ pub(super) const PATIENCE_WITH_CHILDREN: u32 = 8;
 
 impl Neighbour {
     /// A node as heard from `own`.
-    pub fn new(
+    pub(super) fn new(
         beacon: &Arc<Beacon>,
         confirmed: Option<u32>,
         period: u32,
@@ -102,7 +102,7 @@ impl Neighbour {
     }
 
     /// The same node, as last heard, seen from elsewhere.
-    pub fn seen_from(&self, own: Point, site: &Site) -> Self {
+    pub(super) fn seen_from(&self, own: Point, site: &Site) -> Self {
         let (is_heard, silent_rounds) = (self.is_heard, self.silent_rounds);
         Neighbour {
             is_heard,
@@ -111,38 +111,38 @@ impl Neighbour {
         }
     }
 
-    pub fn id(&self) -> NodeId {
+    pub(super) fn id(&self) -> NodeId {
         self.id
     }
 
-    pub fn position(&self) -> Point {
+    pub(super) fn position(&self) -> Point {
         self.beacon.position
     }
 
-    pub fn station(&self) -> Option<&Station> {
+    pub(super) fn station(&self) -> Option<&Station> {
         self.beacon.duty.as_ref()?.station()
     }
 
-    pub fn post(&self) -> Option<&Post> {
+    pub(super) fn post(&self) -> Option<&Post> {
         self.beacon.duty.as_ref()?.post()
     }
 
     /// Whether its post is attached to `post`, if there is one.
-    pub fn is_attached_to(&self, post: Option<PostId>) -> bool {
+    pub(super) fn is_attached_to(&self, post: Option<PostId>) -> bool {
         post.is_some_and(|post| self.post().is_some_and(|held| held.is_child_of(post)))
     }
 
     /// Whether it holds a fixed post from which no task is serviced and no branches part.
-    pub fn is_relay(&self) -> bool {
+    pub(super) fn is_relay(&self) -> bool {
         matches!(self.beacon.duty, Some(Duty::Relay(_)))
     }
 
-    pub fn is_access_point(&self) -> bool {
+    pub(super) fn is_access_point(&self) -> bool {
         self.beacon.duty.is_none()
     }
 
     /// Whether it has been heard in this control period or in the one before.
-    pub const fn is_present(&self, period: u32) -> bool {
+    pub(super) const fn is_present(&self, period: u32) -> bool {
         self.heard_in.saturating_add(1) >= period
     }
 
@@ -154,17 +154,17 @@ impl Neighbour {
     }
 
     /// Whether it was heard in the last round in which all robots send.
-    pub const fn was_heard(&self) -> bool {
+    pub(super) const fn was_heard(&self) -> bool {
         self.silent_rounds == 0
     }
 
     /// Whether it has been silent for so long that it is out of range, or does not run.
-    pub fn is_silent(&self) -> bool {
+    pub(super) fn is_silent(&self) -> bool {
         usize::from(self.silent_rounds) == ROUNDS_TO_BE_HEARD
     }
 
     /// Where its body was when it was heard last.
-    pub fn wreck(&self) -> Wreck {
+    pub(super) fn wreck(&self) -> Wreck {
         Wreck::heard(self.id(), self.position(), self.heard_in)
     }
 }

@@ -53,73 +53,73 @@ impl Default for Knowledge {
 }
 
 impl Knowledge {
-    pub const fn current(&self) -> &Current<Mission> {
+    pub(super) const fn current(&self) -> &Current<Mission> {
         &self.phase
     }
 
-    pub const fn current_mut(&mut self) -> &mut Current<Mission> {
+    pub(super) const fn current_mut(&mut self) -> &mut Current<Mission> {
         &mut self.phase
     }
 
     /// What the robot has received of the mission.
-    pub const fn notices(&self) -> &Notices {
+    pub(super) const fn notices(&self) -> &Notices {
         &self.notices
     }
 
     /// The robot receives or issues a notice.
-    pub const fn notices_mut(&mut self) -> &mut Notices {
+    pub(super) const fn notices_mut(&mut self) -> &mut Notices {
         &mut self.notices
     }
 
     /// The epoch of the notices that the robot follows.
-    pub const fn epoch(&self) -> u32 {
+    pub(super) const fn epoch(&self) -> u32 {
         self.epoch
     }
 
     /// The robot follows the announcement that the newest notice results from.
-    pub fn keep_up(&mut self) {
+    pub(super) fn keep_up(&mut self) {
         self.epoch = self.notices.bulletin().id().epoch();
     }
 
     /// The robot follows this announcement from now on; its leader would go to `target`.
-    pub fn learn(&mut self, announced: Announced, target: Point) {
+    pub(super) fn learn(&mut self, announced: Announced, target: Point) {
         self.epoch = announced.0.epoch();
         self.target = Some(target);
         self.notices.learn(announced);
     }
 
     /// Where the leader goes.
-    pub const fn target(&self) -> Option<Point> {
+    pub(super) const fn target(&self) -> Option<Point> {
         self.target
     }
 
     /// The robot has reached the task of the announcement that it follows.
-    pub fn accomplish(&mut self) {
+    pub(super) fn accomplish(&mut self) {
         self.accomplished = self.notices.announcement_id();
     }
 
     /// The announcement by which the robot has reached its task.
-    pub const fn accomplished(&self) -> Option<NoticeId> {
+    pub(super) const fn accomplished(&self) -> Option<NoticeId> {
         self.accomplished
     }
 
     /// The access point in whose tree the leader of the team was elected, if there are several.
-    pub const fn led_from(&self) -> Option<usize> {
+    pub(super) const fn led_from(&self) -> Option<usize> {
         self.led_from
     }
 
     /// The leader is of the tree of this access point when it is elected.
-    pub const fn is_led_from(&mut self, root: Option<usize>) {
+    pub(super) const fn is_led_from(&mut self, root: Option<usize>) {
         self.led_from = root;
     }
 
     /// What the primary team knows of itself.
-    pub const fn team(&self) -> &Team {
+    pub(super) const fn team(&self) -> &Team {
         &self.team
     }
 
     /// The primary team is reviewed.
-    pub const fn team_mut(&mut self) -> &mut Team {
+    pub(super) const fn team_mut(&mut self) -> &mut Team {
         &mut self.team
     }
 }
@@ -127,22 +127,22 @@ impl Knowledge {
 #[cfg(test)]
 impl Knowledge {
     /// The mission is in this phase.
-    pub fn is(&mut self, mission: Mission) {
+    pub(super) fn is(&mut self, mission: Mission) {
         *self = Knowledge { phase: Current::new(mission), ..self.clone() };
     }
 
     /// The leader goes there.
-    pub const fn leads_to(&mut self, target: Point) {
+    pub(super) const fn leads_to(&mut self, target: Point) {
         self.target = Some(target);
     }
 
     /// The robot has reached its task by this announcement.
-    pub const fn has_accomplished(&mut self, announcement: Option<NoticeId>) {
+    pub(super) const fn has_accomplished(&mut self, announcement: Option<NoticeId>) {
         self.accomplished = announcement;
     }
 
     /// The robot follows notices of this epoch.
-    pub const fn is_of_epoch(&mut self, epoch: u32) {
+    pub(super) const fn is_of_epoch(&mut self, epoch: u32) {
         self.epoch = epoch;
     }
 }

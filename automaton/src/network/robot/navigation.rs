@@ -14,7 +14,7 @@ pub(super) struct Navigation {
 
 impl Navigation {
     /// The robot goes to `goal` from now on.
-    pub fn head_for(&mut self, goal: Point, free_space: &FreeSpace) {
+    pub(super) fn head_for(&mut self, goal: Point, free_space: &FreeSpace) {
         if self.destination.as_ref().is_none_or(|known| known.goal() != goal) {
             self.destination = Some(free_space.destination(goal));
             self.goes_by_link = false;
@@ -22,32 +22,32 @@ impl Navigation {
     }
 
     /// The robot follows a way that its link requires, or does not.
-    pub const fn follow_link(&mut self, goes_by_link: bool) {
+    pub(super) const fn follow_link(&mut self, goes_by_link: bool) {
         self.goes_by_link = goes_by_link;
     }
 
     /// The robot goes to this corner next.
-    pub const fn turn_to(&mut self, waypoint: Point) {
+    pub(super) const fn turn_to(&mut self, waypoint: Point) {
         self.waypoint = Some(waypoint);
     }
 
     /// The robot goes nowhere; returns whether it went somewhere before.
-    pub fn stop(&mut self) -> bool {
+    pub(super) fn stop(&mut self) -> bool {
         self.waypoint.take().is_some()
     }
 
     /// The goal, with the ways that lead there.
-    pub const fn destination(&self) -> Option<&Destination> {
+    pub(super) const fn destination(&self) -> Option<&Destination> {
         self.destination.as_ref()
     }
 
     /// The corner that comes next, where the robot goes somewhere.
-    pub const fn waypoint(&self) -> Option<Point> {
+    pub(super) const fn waypoint(&self) -> Option<Point> {
         self.waypoint
     }
 
     /// Whether the robot follows a way that its link requires.
-    pub const fn goes_by_link(&self) -> bool {
+    pub(super) const fn goes_by_link(&self) -> bool {
         self.goes_by_link
     }
 }

@@ -47,7 +47,7 @@ pub(super) struct Negotiation {
 
 impl Negotiation {
     /// A negotiation begins: nothing is proposed, nothing has been received of others, and nobody consents.
-    pub fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         (self.proposal, self.sent, self.problem) = (None, None, None);
         self.moves.clear();
         self.consents.clear();
@@ -56,45 +56,45 @@ impl Negotiation {
     }
 
     /// Where the robot goes.
-    pub const fn navigation(&self) -> &Navigation {
+    pub(super) const fn navigation(&self) -> &Navigation {
         &self.navigation
     }
 
     /// The robot goes elsewhere.
-    pub const fn navigation_mut(&mut self) -> &mut Navigation {
+    pub(super) const fn navigation_mut(&mut self) -> &mut Navigation {
         &mut self.navigation
     }
 
     /// The robot intends this move, to a solution of a problem.
-    pub fn propose(&mut self, segment: Segment, problem: MotionProblem) {
+    pub(super) fn propose(&mut self, segment: Segment, problem: MotionProblem) {
         self.proposal = Some(segment);
         self.problem = Some(problem).filter(|problem| problem.admits(&segment.from));
     }
 
     /// Whether the robot intends a move.
-    pub const fn has_proposal(&self) -> bool {
+    pub(super) const fn has_proposal(&self) -> bool {
         self.proposal.is_some()
     }
 
     /// Where the robot would be that is here.
-    pub fn own_move(&self, position: Point) -> Segment {
+    pub(super) fn own_move(&self, position: Point) -> Segment {
         self.proposal.unwrap_or(Segment::still(position))
     }
 
     /// By how much a robot here is outside of the region in which it moves; 0 if it stands still.
-    pub fn outside(&self, position: Point) -> f64 {
+    pub(super) fn outside(&self, position: Point) -> f64 {
         let margin =
             self.problem.as_ref().map_or(0.0, |problem| problem.smallest_margin(&position));
         (-margin).max(0.0)
     }
 
     /// Whether the proposed move has to be sent: until all that rely on the robot consent, and whenever it changes.
-    pub fn has_to_send(&self, reliant: &[NodeId]) -> bool {
+    pub(super) fn has_to_send(&self, reliant: &[NodeId]) -> bool {
         self.sent != self.proposal || !self.has_consents_of(reliant)
     }
 
     /// Sends the proposed move, if there is one, with the witness that it needs where nobody relies on the robot.
-    pub fn send(&mut self, period: u32, witness: Option<NodeId>, outputs: &mut NodeOutputs) {
+    pub(super) fn send(&mut self, period: u32, witness: Option<NodeId>, outputs: &mut NodeOutputs) {
         self.sent = self.proposal;
         if let Some(segment) = self.proposal {
             outputs.broadcast(Message::Proposal { period, segment, witness });
@@ -102,7 +102,7 @@ impl Negotiation {
     }
 
     /// A neighbour proposes a move, and waits for the consent of this robot or not.
-    pub fn receive_proposal(&mut self, from: NodeId, segment: Segment, waits: bool) {
+    pub(super) fn receive_proposal(&mut self, from: NodeId, segment: Segment, waits: bool) {
         if waits && !self.to_answer.contains(&from) {
             self.to_answer.push(from);
         }
@@ -116,17 +116,17 @@ impl Negotiation {
     }
 
     /// The move that a neighbour proposes.
-    pub fn move_of(&self, node: NodeId) -> Option<Segment> {
+    pub(super) fn move_of(&self, node: NodeId) -> Option<Segment> {
         self.moves.iter().find(|(from, _)| *from == node).map(|&(_, segment)| segment)
     }
 
     /// The neighbours that propose a move.
-    pub fn movers(&self) -> impl Iterator<Item = NodeId> {
+    pub(super) fn movers(&self) -> impl Iterator<Item = NodeId> {
         self.moves.iter().map(|&(mover, _)| mover)
     }
 
     /// A node that relies on the robot, or is its witness, consents to its move.
-    pub fn receive_consent(&mut self, from: NodeId) {
+    pub(super) fn receive_consent(&mut self, from: NodeId) {
         if !self.consents.contains(&from) {
             self.consents.push(from);
         }
@@ -138,44 +138,44 @@ impl Negotiation {
     }
 
     /// Without the consent of all that rely on it, and of one node at least, the robot stays.
-    pub fn stay_without_consent(&mut self, reliant: &[NodeId]) {
+    pub(super) fn stay_without_consent(&mut self, reliant: &[NodeId]) {
         if !self.has_consents_of(reliant) {
             self.withdraw();
         }
     }
 
     /// The robot gives its move up.
-    pub const fn withdraw(&mut self) {
+    pub(super) const fn withdraw(&mut self) {
         self.proposal = None;
     }
 
     /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
     /// gives it up. A move that leads back into the region from outside is made in whole or not at all: half
     /// of it might not gain what errors may lose.
-    pub fn yield_to_objection(&mut self, is_last_chance: bool) {
+    pub(super) fn yield_to_objection(&mut self, is_last_chance: bool) {
         self.must_judge |= self.proposal.is_some();
         let may_shrink = self.problem.is_some() && !is_last_chance;
         self.proposal = self.proposal.filter(|_| may_shrink).map(|segment| segment.halved());
     }
 
     /// Whether the robot neither proposes a move nor has received any.
-    pub const fn is_idle(&self) -> bool {
+    pub(super) const fn is_idle(&self) -> bool {
         self.moves.is_empty() && self.proposal.is_none()
     }
 
     /// Whether the robot neither proposes a move nor has received one that it has not answered.
-    pub const fn has_nothing_to_judge(&self) -> bool {
+    pub(super) const fn has_nothing_to_judge(&self) -> bool {
         let is_answered = !self.must_judge && self.to_answer.is_empty();
         self.proposal.is_none() && (self.moves.is_empty() || is_answered)
     }
 
     /// Whether moves are not as they were when they were accepted.
-    pub const fn must_judge(&self) -> bool {
+    pub(super) const fn must_judge(&self) -> bool {
         self.must_judge
     }
 
     /// All moves are acceptable: consents to those that wait for that.
-    pub fn consent(&mut self, period: u32, outputs: &mut NodeOutputs) {
+    pub(super) fn consent(&mut self, period: u32, outputs: &mut NodeOutputs) {
         self.must_judge = false;
         for mover in std::mem::take(&mut self.to_answer) {
             outputs.send(mover, Message::Consent { period });
@@ -185,7 +185,7 @@ impl Negotiation {
     }
 
     /// Whether the robot has consented to a move of this node in a control period or later.
-    pub fn has_consented_since(&self, node: NodeId, period: u32) -> bool {
+    pub(super) fn has_consented_since(&self, node: NodeId, period: u32) -> bool {
         self.consented.iter().any(|&(mover, consented)| mover == node && consented >= period)
     }
 }
@@ -193,17 +193,17 @@ impl Negotiation {
 #[cfg(test)]
 impl Negotiation {
     /// The robot intends this move instead.
-    pub const fn intends(&mut self, segment: Option<Segment>) {
+    pub(super) const fn intends(&mut self, segment: Option<Segment>) {
         self.proposal = segment;
     }
 
     /// The move that the robot intends.
-    pub const fn proposal(&self) -> Option<Segment> {
+    pub(super) const fn proposal(&self) -> Option<Segment> {
         self.proposal
     }
 
     /// The region in which it moves.
-    pub const fn problem(&self) -> Option<&MotionProblem> {
+    pub(super) const fn problem(&self) -> Option<&MotionProblem> {
         self.problem.as_ref()
     }
 }

@@ -20,7 +20,7 @@ impl Places<'_> {
     /// Whether a node on which the robot relies is where it was received last: it is an access point, it has been
     /// received in this control period, or it could not move since, because the robot sends to it and has not
     /// consented.
-    pub fn are_known_of(&self, node: NodeId, sends_to: bool) -> bool {
+    pub(super) fn are_known_of(&self, node: NodeId, sends_to: bool) -> bool {
         let Context { id, period, .. } = self.context;
         if !self.context.is_robot(node) {
             return true;
@@ -35,7 +35,7 @@ impl Places<'_> {
     }
 
     /// The last control period in which this node has been received; 0 if it has not.
-    pub fn last_heard(&self, node: NodeId) -> u32 {
+    pub(super) fn last_heard(&self, node: NodeId) -> u32 {
         self.neighbours.place_of(node).map_or(0, |at| self.neighbours[at].heard_in)
     }
 }

@@ -15,22 +15,22 @@ pub(super) struct Team {
 
 impl Team {
     /// What the team knows of itself, from the leader back to the robot.
-    pub const fn report(&self) -> Option<TeamReport> {
+    pub(super) const fn report(&self) -> Option<TeamReport> {
         self.report
     }
 
     /// The post of the robot, if another one follows it.
-    pub const fn followed_post(&self) -> Option<PostId> {
+    pub(super) const fn followed_post(&self) -> Option<PostId> {
         self.followed_post
     }
 
     /// This is known now, if the robot is of the active team.
-    pub const fn review(&mut self, report: Option<TeamReport>) {
+    pub(super) const fn review(&mut self, report: Option<TeamReport>) {
         self.report = report;
     }
 
     /// Another robot follows the robot that holds this post, or none does.
-    pub const fn follow(&mut self, post: Option<PostId>) {
+    pub(super) const fn follow(&mut self, post: Option<PostId>) {
         self.followed_post = post;
     }
 }

@@ -27,7 +27,7 @@ pub(super) struct Changes {
 
 impl Revision {
     /// That of a robot from which nothing has been derived.
-    pub const FIRST: Revision = Revision(0);
+    pub(super) const FIRST: Revision = Revision(0);
 
     /// The revision after this.
     const fn next(self) -> Self {
@@ -37,17 +37,17 @@ impl Revision {
 
 impl Stamp {
     /// Whether nothing has changed since.
-    pub fn is_of(self, revision: Revision) -> bool {
+    pub(super) fn is_of(self, revision: Revision) -> bool {
         self.0 == Some(revision)
     }
 
     /// It is derived from what is there now; returns whether something had changed.
-    pub fn renew(&mut self, revision: Revision) -> bool {
+    pub(super) fn renew(&mut self, revision: Revision) -> bool {
         self.0.replace(revision) != Some(revision)
     }
 
     /// It has to be derived again, whether or not anything changes.
-    pub const fn expire(&mut self) {
+    pub(super) const fn expire(&mut self) {
         self.0 = None;
     }
 }
@@ -67,56 +67,56 @@ impl Default for Changes {
 }
 
 impl Changes {
-    pub const fn revision(&self) -> Revision {
+    pub(super) const fn revision(&self) -> Revision {
         self.revision
     }
 
     /// The robot's own state, or what it has received, has changed: it has to process messages, to compare its beacon, to
     /// measure its facts and to find its links.
-    pub const fn note(&mut self) {
+    pub(super) const fn note(&mut self) {
         self.revision = self.revision.next();
     }
 
     /// A transition may be taken although no fact changes.
-    pub const fn allow_jump(&mut self) {
+    pub(super) const fn allow_jump(&mut self) {
         self.is_quiet = false;
     }
 
     /// Whether something has changed since messages were processed.
-    pub fn are_news(&self) -> bool {
+    pub(super) fn are_news(&self) -> bool {
         !self.processed_at.is_of(self.revision)
     }
 
     /// Messages are processed: what that changes is news only from now on.
-    pub fn process(&mut self) {
+    pub(super) fn process(&mut self) {
         self.note();
         self.processed_at.renew(self.revision);
     }
 
     /// The beacon is compared; returns whether it may differ from the last.
-    pub fn compare(&mut self) -> bool {
+    pub(super) fn compare(&mut self) -> bool {
         self.compared_at.renew(self.revision)
     }
 
     /// The facts are measured; returns whether they may differ from the last.
-    pub fn measure(&mut self) -> bool {
+    pub(super) fn measure(&mut self) -> bool {
         self.measured_at.renew(self.revision)
     }
 
     /// Guards are evaluated with these facts; returns whether one may hold that did not hold before.
-    pub fn renew_facts(&mut self, facts: Facts) -> bool {
+    pub(super) fn renew_facts(&mut self, facts: Facts) -> bool {
         let has_changed = std::mem::replace(&mut self.facts, facts) != facts;
         let was_quiet = std::mem::replace(&mut self.is_quiet, true);
         has_changed || !was_quiet
     }
 
     /// What guards saw when they were evaluated last.
-    pub const fn facts(&self) -> &Facts {
+    pub(super) const fn facts(&self) -> &Facts {
         &self.facts
     }
 
     /// Whether no transition can be taken before the facts change.
-    pub const fn is_quiet(&self) -> bool {
+    pub(super) const fn is_quiet(&self) -> bool {
         self.is_quiet
     }
 }
@@ -124,7 +124,7 @@ impl Changes {
 #[cfg(feature = "abstraction")]
 impl Changes {
     /// Whether messages, beacon and facts are as they were derived.
-    pub fn are_derived(&self) -> [bool; 3] {
+    pub(super) fn are_derived(&self) -> [bool; 3] {
         [self.processed_at, self.compared_at, self.measured_at].map(|it| it.is_of(self.revision))
     }
 }
@@ -132,19 +132,19 @@ impl Changes {
 #[cfg(test)]
 impl Changes {
     /// Everything has been derived.
-    pub fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         self.process();
         self.compare();
         self.measure();
     }
 
     /// Guards see these facts.
-    pub const fn sees(&mut self, facts: Facts) {
+    pub(super) const fn sees(&mut self, facts: Facts) {
         self.facts = facts;
     }
 
     /// No transition can be taken before the facts change.
-    pub const fn rest(&mut self) {
+    pub(super) const fn rest(&mut self) {
         self.is_quiet = true;
     }
 }

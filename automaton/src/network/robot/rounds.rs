@@ -47,26 +47,26 @@ impl Rounds {
     const LAST_OF_NEGOTIATION: usize = 2 * (ATTEMPTS + 1);
 
     /// Rounds are counted anew.
-    pub const fn restart(&mut self) {
+    pub(super) const fn restart(&mut self) {
         *self = Rounds(0);
     }
 
     /// Further rounds pass.
-    pub const fn pass(&mut self, rounds: usize) {
+    pub(super) const fn pass(&mut self, rounds: usize) {
         self.0 += rounds;
     }
 
-    pub const fn count(self) -> usize {
+    pub(super) const fn count(self) -> usize {
         self.0
     }
 
     /// Multipliers and flows alternate.
-    pub const fn is_for_multipliers(self) -> bool {
+    pub(super) const fn is_for_multipliers(self) -> bool {
         self.0 % 2 == 1
     }
 
     /// Whether the flows of the last of these iterations are heard.
-    pub const fn is_last_of(self, iterations: usize) -> bool {
+    pub(super) const fn is_last_of(self, iterations: usize) -> bool {
         self.0 >= Self::of_iterations(iterations)
     }
 
@@ -74,7 +74,7 @@ impl Rounds {
         2 * iterations
     }
 
-    pub const fn of_sweep(self) -> SweepRound {
+    pub(super) const fn of_sweep(self) -> SweepRound {
         match self.0 % Self::PER_SWEEP {
             1 => SweepRound::Demands,
             2 => SweepRound::Flows,
@@ -83,41 +83,41 @@ impl Rounds {
         }
     }
 
-    pub const fn is_last_sweep(self) -> bool {
+    pub(super) const fn is_last_sweep(self) -> bool {
         self.0 >= Self::LAST_OF_SWEEPS
     }
 
     /// Whether requests that have not been answered are made again, and circles are looked for.
-    pub const fn is_for_asking_again(self) -> bool {
+    pub(super) const fn is_for_asking_again(self) -> bool {
         self.0.is_multiple_of(ROUNDS_FOR_AN_ANSWER)
     }
 
     /// How often requests that have not been answered have been made again.
-    pub const fn times_asked_again(self) -> usize {
+    pub(super) const fn times_asked_again(self) -> usize {
         self.0 / ROUNDS_FOR_AN_ANSWER
     }
 
     /// Whether more may be granted: its sender hears of it, and can still give back what it has no room
     /// for.
-    pub const fn is_for_grants(self) -> bool {
+    pub(super) const fn is_for_grants(self) -> bool {
         self.0 + 2 <= RESERVATION
     }
 
     /// Whether the reservation is over.
-    pub const fn is_last_of_reservation(self) -> bool {
+    pub(super) const fn is_last_of_reservation(self) -> bool {
         self.0 >= RESERVATION
     }
 
-    pub const fn is_for_proposals(self) -> bool {
+    pub(super) const fn is_for_proposals(self) -> bool {
         self.0 % 2 == 1
     }
 
-    pub const fn is_last_attempt(self) -> bool {
+    pub(super) const fn is_last_attempt(self) -> bool {
         self.0 >= Self::LAST_OF_NEGOTIATION
     }
 
     /// Whether an objection that is heard from now on is the last of this negotiation.
-    pub const fn is_last_chance(self) -> bool {
+    pub(super) const fn is_last_chance(self) -> bool {
         self.0 >= 2 * ATTEMPTS
     }
 }

@@ -38,82 +38,82 @@ impl Default for Schedule {
 
 impl Schedule {
     /// That of a robot that begins again at this place in its control period.
-    pub const fn begun_again(self) -> Self {
+    pub(super) const fn begun_again(self) -> Self {
         Schedule { is_new: false, is_behind: false, ..self }
     }
 
     /// The number of the control period.
-    pub const fn period(&self) -> u32 {
+    pub(super) const fn period(&self) -> u32 {
         self.period
     }
 
     /// The round of the stage.
-    pub const fn rounds(&self) -> Rounds {
+    pub(super) const fn rounds(&self) -> Rounds {
         self.rounds
     }
 
-    pub fn stage(&self) -> Stage {
+    pub(super) fn stage(&self) -> Stage {
         self.control.location()
     }
 
-    pub const fn control(&self) -> &Current<Control> {
+    pub(super) const fn control(&self) -> &Current<Control> {
         &self.control
     }
 
-    pub const fn control_mut(&mut self) -> &mut Current<Control> {
+    pub(super) const fn control_mut(&mut self) -> &mut Current<Control> {
         &mut self.control
     }
 
     /// A row of the control automaton has been taken, with this work.
-    pub const fn carry_out(&mut self, acts: Acts) {
+    pub(super) const fn carry_out(&mut self, acts: Acts) {
         self.acts = acts;
     }
 
     /// The work of the row that has been taken.
-    pub fn take_acts(&mut self) -> Acts {
+    pub(super) fn take_acts(&mut self) -> Acts {
         std::mem::take(&mut self.acts)
     }
 
     /// Further rounds pass.
-    pub const fn pass_rounds(&mut self, rounds: usize) {
+    pub(super) const fn pass_rounds(&mut self, rounds: usize) {
         self.rounds.pass(rounds);
     }
 
     /// The next round is the first of a stage.
-    pub const fn count_rounds_anew(&mut self) {
+    pub(super) const fn count_rounds_anew(&mut self) {
         self.rounds.restart();
     }
 
     /// The next control period begins.
-    pub const fn begin_period(&mut self) {
+    pub(super) const fn begin_period(&mut self) {
         self.period = self.period.saturating_add(1);
         self.is_behind = false;
     }
 
     /// This control period is under way.
-    pub const fn join(&mut self, period: u32) {
+    pub(super) const fn join(&mut self, period: u32) {
         self.period = period;
     }
 
     /// Whether another node has begun the next control period.
-    pub const fn is_behind(&self) -> bool {
+    pub(super) const fn is_behind(&self) -> bool {
         self.is_behind
     }
 
     /// The number of the newest control period that any node is known to have begun.
-    pub const fn newest_period(&self) -> u32 {
+    pub(super) const fn newest_period(&self) -> u32 {
         self.period.saturating_add(self.is_behind as u32)
     }
 
     /// Whether the robot has just started, asked once.
-    pub const fn take_new(&mut self) -> bool {
+    pub(super) const fn take_new(&mut self) -> bool {
         std::mem::replace(&mut self.is_new, false)
     }
 
     /// Another node has begun a later control period. Control periods begin together: a robot
     /// that has just started, or has received nobody since, learns which one this is, and any other begins it as soon
     /// as its own is over but for the move. Returns the control period that the robot has to join.
-    pub const fn receive_later_period(&mut self, period: u32) -> Option<u32> {
+    pub(super) const fn receive_later_period(&mut self, period: u32) -> Option<u32> {
         if self.is_new {
             return Some(period);
         }
@@ -125,7 +125,7 @@ impl Schedule {
 #[cfg(feature = "abstraction")]
 impl Schedule {
     /// What a robot waits for that an explorer tells apart.
-    pub const fn waits(&self) -> [bool; 2] {
+    pub(super) const fn waits(&self) -> [bool; 2] {
         [self.is_new, self.is_behind]
     }
 }
@@ -133,17 +133,17 @@ impl Schedule {
 #[cfg(test)]
 impl Schedule {
     /// The robot has received others before, and this control period is under way.
-    pub const fn is_in(&mut self, period: u32) {
+    pub(super) const fn is_in(&mut self, period: u32) {
         (self.period, self.is_new) = (period, false);
     }
 
     /// The robot has received no other.
-    pub const fn starts(&mut self) {
+    pub(super) const fn starts(&mut self) {
         self.is_new = true;
     }
 
     /// It is in this stage.
-    pub fn is_at(&mut self, control: Control) {
+    pub(super) fn is_at(&mut self, control: Control) {
         *self = Schedule { control: Current::new(control), ..self.clone() };
     }
 }

@@ -45,7 +45,7 @@ pub(super) struct TreePlace {
 
 impl TreePlace {
     /// That of a robot which is attached to nothing.
-    pub fn alone(id: NodeId) -> Self {
+    pub(super) fn alone(id: NodeId) -> Self {
         TreePlace {
             place: Current::new(PlaceInTree::Detached(Detached)),
             parent: None,
@@ -65,16 +65,16 @@ impl TreePlace {
         }
     }
 
-    pub const fn current(&self) -> &Current<PlaceInTree> {
+    pub(super) const fn current(&self) -> &Current<PlaceInTree> {
         &self.place
     }
 
-    pub const fn current_mut(&mut self) -> &mut Current<PlaceInTree> {
+    pub(super) const fn current_mut(&mut self) -> &mut Current<PlaceInTree> {
         &mut self.place
     }
 
     /// The way from the post of the robot to an access point, if one is known.
-    pub fn lineage(&self) -> Option<&Arc<Lineage>> {
+    pub(super) fn lineage(&self) -> Option<&Arc<Lineage>> {
         match &*self.place {
             PlaceInTree::Detached(_) => None,
             PlaceInTree::Attached(attached) => Some(&attached.way),
@@ -82,54 +82,54 @@ impl TreePlace {
     }
 
     /// The parent as it was last.
-    pub const fn parent(&self) -> Option<NodeId> {
+    pub(super) const fn parent(&self) -> Option<NodeId> {
         self.parent
     }
 
     /// The parent is this node now.
-    pub const fn attach_to(&mut self, parent: Option<NodeId>) {
+    pub(super) const fn attach_to(&mut self, parent: Option<NodeId>) {
         self.parent = parent;
     }
 
     /// What is received of the way from the parent.
-    pub const fn heard_way(&self) -> HeardWay {
+    pub(super) const fn heard_way(&self) -> HeardWay {
         self.heard_way
     }
 
     /// This is received of the way from the parent.
-    pub const fn hear_way(&mut self, way: HeardWay) {
+    pub(super) const fn hear_way(&mut self, way: HeardWay) {
         self.heard_way = way;
     }
 
     /// Whether the robot has been given the post of another robot in this jump.
-    pub const fn is_displaced(&self) -> bool {
+    pub(super) const fn is_displaced(&self) -> bool {
         self.is_displaced
     }
 
     /// The robot has been given the post of another robot in this jump, or the way from there has been looked for.
-    pub const fn displace(&mut self, is_displaced: bool) {
+    pub(super) const fn displace(&mut self, is_displaced: bool) {
         self.is_displaced = is_displaced;
     }
 
     /// The robot has got another duty: it looks for a parent of its new post.
-    pub const fn begin_duty(&mut self) {
+    pub(super) const fn begin_duty(&mut self) {
         self.desire_nothing();
         self.unused_periods = 0;
     }
 
     /// The parent that the robot has found to be best, if it has looked for one.
-    pub const fn desired_parent(&self) -> Option<Option<Anchor>> {
+    pub(super) const fn desired_parent(&self) -> Option<Option<Anchor>> {
         self.desired_parent
     }
 
     /// The node that p₁ finds to be a better parent.
-    pub const fn reattaches_to(&self) -> Option<NodeId> {
+    pub(super) const fn reattaches_to(&self) -> Option<NodeId> {
         self.reattaches_to
     }
 
     /// The robot has found this parent to be best, which p₁ attaches to at this node; or it has to wait until the way of
     /// that is confirmed.
-    pub const fn desire(
+    pub(super) const fn desire(
         &mut self,
         parent: Option<Option<Anchor>>,
         reattaches_to: Option<NodeId>,
@@ -143,79 +143,79 @@ impl TreePlace {
     }
 
     /// The robot looks for no parent while its duty is being handed over. What it waits for stays.
-    pub const fn desire_nothing(&mut self) {
+    pub(super) const fn desire_nothing(&mut self) {
         (self.desired_parent, self.reattaches_to) = (None, None);
     }
 
     /// Whether another parent would be better, and is not confirmed yet.
-    pub const fn awaits_confirmation(&self) -> bool {
+    pub(super) const fn awaits_confirmation(&self) -> bool {
         self.awaits_confirmation
     }
 
     /// How recently the way from the post has been confirmed.
-    pub const fn confirmation(&self) -> &Confirmation {
+    pub(super) const fn confirmation(&self) -> &Confirmation {
         &self.confirmation
     }
 
     /// The way of the parent has been confirmed in this control period.
-    pub fn pass_on_confirmation(&mut self, confirmed: Option<u32>) {
+    pub(super) fn pass_on_confirmation(&mut self, confirmed: Option<u32>) {
         self.confirmation.pass_on(confirmed);
     }
 
     /// The post has been taken over from a robot that may have passed on confirmations up to this control period.
-    pub fn take_over_confirmation(&mut self, period: u32) {
+    pub(super) fn take_over_confirmation(&mut self, period: u32) {
         self.confirmation.take_over(period);
     }
 
     /// Whether the post could be attached elsewhere.
-    pub const fn can_detach(&self) -> bool {
+    pub(super) const fn can_detach(&self) -> bool {
         self.can_detach
     }
 
     /// The post could be attached elsewhere, or could not.
-    pub const fn note_other_parent(&mut self, can_detach: bool) {
+    pub(super) const fn note_other_parent(&mut self, can_detach: bool) {
         self.can_detach = can_detach;
     }
 
     /// Control periods for which no branch has depended on the post.
-    pub const fn unused_periods(&self) -> u32 {
+    pub(super) const fn unused_periods(&self) -> u32 {
         self.unused_periods
     }
 
     /// A control period in which no branch depends on the post, or one does, up to a number of interest.
-    pub fn count_unused_period(&mut self, is_unused: bool, most: u32) {
+    pub(super) fn count_unused_period(&mut self, is_unused: bool, most: u32) {
         self.unused_periods = if is_unused { most.min(self.unused_periods + 1) } else { 0 };
     }
 
     /// Control periods for which the robot has not received its parent.
-    pub const fn orphaned_periods(&self) -> u32 {
+    pub(super) const fn orphaned_periods(&self) -> u32 {
         self.orphaned_periods
     }
 
     /// A control period in which the robot has not received its parent, or has, up to a number of interest.
-    pub fn count_orphaned_period(&mut self, is_orphaned: bool, most: u32) {
+    pub(super) fn count_orphaned_period(&mut self, is_orphaned: bool, most: u32) {
         self.orphaned_periods = if is_orphaned { most.min(self.orphaned_periods + 1) } else { 0 };
     }
 
     /// What is reported of its branch.
-    pub fn collect(&mut self, reports: Reports) {
+    pub(super) fn collect(&mut self, reports: Reports) {
         renew(&mut self.below, reports.below);
         renew(&mut self.strays, reports.strays);
         renew(&mut self.serves, reports.serves);
     }
 
     /// The robots of the branch, those that know no way, and the tasks that are serviced.
-    pub const fn reports(&self) -> [&Arc<IdSet>; 3] {
+    pub(super) const fn reports(&self) -> [&Arc<IdSet>; 3] {
         [&self.below, &self.strays, &self.serves]
     }
 
     /// Where the robots are that are attached to the robot.
-    pub const fn branches(&self) -> &Arc<Vec<Branch>> {
+    pub(super) const fn branches(&self) -> &Arc<Vec<Branch>> {
         &self.branches
     }
 
     /// The robots that are attached to the robot are there now.
-    pub fn locate_branches(&mut self, now: Vec<Branch>) {
+    pub(super) fn locate_branches(&mut self, now: Vec<Branch>) {
         if *self.branches != now {
             self.branches = Arc::new(now);
         }
@@ -225,22 +225,22 @@ impl TreePlace {
 #[cfg(feature = "abstraction")]
 impl TreePlace {
     /// Every way to an access point counts as confirmed anew.
-    pub fn confirm_anew(&mut self) {
+    pub(super) fn confirm_anew(&mut self) {
         self.confirmation = Confirmation::default();
     }
 
     /// The control periods of confirmations are numbered anew.
-    pub fn renumber(&mut self, number: impl Fn(u32) -> u32) {
+    pub(super) fn renumber(&mut self, number: impl Fn(u32) -> u32) {
         self.confirmation = self.confirmation.renumbered(number);
     }
 
     /// The robot counts as having received its parent.
-    pub const fn find_parent(&mut self) {
+    pub(super) const fn find_parent(&mut self) {
         self.orphaned_periods = 0;
     }
 
     /// What decides on the parent that is looked for, and on what is passed on.
-    pub const fn search(&self) -> (Option<Option<Anchor>>, Option<NodeId>, bool, &Confirmation) {
+    pub(super) const fn search(&self) -> (Option<Option<Anchor>>, Option<NodeId>, bool, &Confirmation) {
         (self.desired_parent, self.reattaches_to, self.awaits_confirmation, &self.confirmation)
     }
 }

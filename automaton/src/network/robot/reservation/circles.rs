@@ -162,7 +162,7 @@ impl Reservation {
 
     /// Sets aside what goes round a circle where this is the robot's own probe, and passes on that of another robot that
     /// has not come by before.
-    pub fn receive_probe(
+    pub(crate) fn receive_probe(
         &mut self,
         context: Context<'_>,
         from: NodeId,

@@ -32,7 +32,7 @@ pub(super) struct HeldFlow {
 
 impl HeldFlow {
     /// The receiver.
-    pub const fn to(&self) -> NodeId {
+    pub(super) const fn to(&self) -> NodeId {
         self.to
     }
 
@@ -42,7 +42,7 @@ impl HeldFlow {
     }
 
     /// Whether packets flow.
-    pub const fn is_flowing(&self) -> bool {
+    pub(super) const fn is_flowing(&self) -> bool {
         self.flow > 0.0
     }
 
@@ -62,7 +62,7 @@ impl HeldFlow {
     }
 
     /// What of it is about to end, and waits to be renewed.
-    pub fn waiting(&self, period: u32) -> f64 {
+    pub(super) fn waiting(&self, period: u32) -> f64 {
         self.flow - self.lasting(soon_after(period))
     }
 
@@ -129,7 +129,7 @@ impl HeldFlow {
     }
 
     /// The request with this number. What was granted before is void, beyond what is in use.
-    pub fn request(&mut self, number: RequestNumber) -> FlowRequest {
+    pub(super) fn request(&mut self, number: RequestNumber) -> FlowRequest {
         self.lease.limit(self.flow);
         (self.asked, self.is_open) = (number, true);
         FlowRequest { number, held: self.flow, wanted: self.wanted }
@@ -146,21 +146,21 @@ impl HeldFlows {
         self.0.binary_search_by_key(&node, |held| held.to)
     }
 
-    pub fn to(&self, node: NodeId) -> Option<&HeldFlow> {
+    pub(super) fn to(&self, node: NodeId) -> Option<&HeldFlow> {
         self.place_of(node).ok().map(|at| &self.0[at])
     }
 
-    pub fn all(&self) -> &[HeldFlow] {
+    pub(super) fn all(&self) -> &[HeldFlow] {
         &self.0
     }
 
     /// What is held of a link ends with it.
-    pub fn retain(&mut self, has_link: impl Fn(NodeId) -> bool) {
+    pub(super) fn retain(&mut self, has_link: impl Fn(NodeId) -> bool) {
         self.0.retain(|held| has_link(held.to));
     }
 
     /// Begins a control period with this plan for a flow, as [`HeldFlow::plan`].
-    pub fn plan(&mut self, plan: Plan, may_rise: bool, until: Option<u32>, period: u32) {
+    pub(super) fn plan(&mut self, plan: Plan, may_rise: bool, until: Option<u32>, period: u32) {
         let at = self.place_of(plan.to).unwrap_or_else(|at| {
             self.0.insert(at, HeldFlow { to: plan.to, ..HeldFlow::default() });
             at
@@ -169,17 +169,17 @@ impl HeldFlows {
     }
 
     /// Requests that wait for an answer are to be made again.
-    pub fn ask_again(&mut self) {
+    pub(super) fn ask_again(&mut self) {
         self.0.iter_mut().for_each(|held| held.is_due = held.is_open);
     }
 
     /// The flows for which a request is to be made now.
-    pub fn take_requests(&mut self) -> impl Iterator<Item = &mut HeldFlow> {
+    pub(super) fn take_requests(&mut self) -> impl Iterator<Item = &mut HeldFlow> {
         self.0.iter_mut().filter_map(|held| held.takes_request().then_some(held))
     }
 
     /// The receiver of a flow answers a request; returns whether it was the last one.
-    pub fn receive_grant(&mut self, from: NodeId, grant: FlowGrant, period: u32) -> bool {
+    pub(super) fn receive_grant(&mut self, from: NodeId, grant: FlowGrant, period: u32) -> bool {
         let Ok(at) = self.place_of(from) else { return false };
         let held = &mut self.0[at];
         if held.asked != grant.number {
@@ -195,27 +195,27 @@ impl HeldFlows {
     }
 
     /// Whether every request has been answered.
-    pub fn are_answered(&self) -> bool {
+    pub(super) fn are_answered(&self) -> bool {
         !self.0.iter().any(|held| held.is_open)
     }
 
     /// Whether packets flow to this node.
-    pub fn flows_to(&self, node: NodeId) -> bool {
+    pub(super) fn flows_to(&self, node: NodeId) -> bool {
         self.to(node).is_some_and(HeldFlow::is_flowing)
     }
 
     /// Whether this node has been asked for a flow over the link that there is now.
-    pub fn has_asked(&self, node: NodeId) -> bool {
+    pub(super) fn has_asked(&self, node: NodeId) -> bool {
         self.to(node).is_some_and(|held| held.asked != RequestNumber::default())
     }
 
     /// The nodes to which packets flow.
-    pub fn receivers(&self) -> impl Iterator<Item = NodeId> {
+    pub(super) fn receivers(&self) -> impl Iterator<Item = NodeId> {
         self.0.iter().filter(|held| held.is_flowing()).map(|held| held.to)
     }
 
     /// T_ij of each flow.
-    pub fn loads(&self) -> impl Iterator<Item = (NodeId, f64)> {
+    pub(super) fn loads(&self) -> impl Iterator<Item = (NodeId, f64)> {
         self.0.iter().map(|held| (held.to, held.load()))
     }
 
@@ -224,33 +224,33 @@ impl HeldFlows {
     }
 
     /// Σ_j F_ij.
-    pub fn outflow(&self) -> f64 {
+    pub(super) fn outflow(&self) -> f64 {
         self.in_use().map(|held| held.flow).sum()
     }
 
     /// What is left of the flows in a control period ahead if no grant is renewed.
-    pub fn lasting(&self, period: u32) -> f64 {
+    pub(super) fn lasting(&self, period: u32) -> f64 {
         self.in_use().map(|held| held.lasting(period)).sum()
     }
 
     /// The control periods after which less flows if no grant is renewed.
-    pub fn ends(&self) -> impl Iterator<Item = u32> {
+    pub(super) fn ends(&self) -> impl Iterator<Item = u32> {
         self.in_use().filter(|held| held.is_flowing()).flat_map(|held| ends(&held.lease))
     }
 
     /// The last control period up to which flows last that carry this much.
-    pub fn last_until(&self, carried: f64) -> Option<u32> {
+    pub(super) fn last_until(&self, carried: f64) -> Option<u32> {
         self.ends().filter(|&end| self.lasting(end) >= carried - SAME_FLOW).max()
     }
 
     /// Whether a flow is to be raised or lowered.
-    pub fn are_to_change(&self) -> bool {
+    pub(super) fn are_to_change(&self) -> bool {
         self.in_use().any(HeldFlow::is_to_change)
     }
 
     /// Raises flows as far as they are granted and there is time to send, lowers others as far as the rest
     /// carries these needs, each up to its control period, and replaces one by another.
-    pub fn change(&mut self, needs: &[(u32, f64)], period: u32) {
+    pub(super) fn change(&mut self, needs: &[(u32, f64)], period: u32) {
         let promised = needs.last().map_or(period, |&(period, _)| period);
         let mut in_use: Vec<&mut HeldFlow> = Vec::with_capacity(self.0.len());
         in_use.extend(self.0.iter_mut().filter(|held| held.is_in_use()));
@@ -304,7 +304,7 @@ fn replace_flows(flows: &mut [&mut HeldFlow], promised: u32) -> f64 {
 #[cfg(test)]
 impl HeldFlow {
     /// F_ij, the lease, and the number of the last request.
-    pub const fn parts(&self) -> (f64, Lease<f64>, RequestNumber) {
+    pub(super) const fn parts(&self) -> (f64, Lease<f64>, RequestNumber) {
         (self.flow, self.lease, self.asked)
     }
 }
@@ -312,7 +312,7 @@ impl HeldFlow {
 #[cfg(test)]
 impl HeldFlows {
     /// This much flows to a node, by this lease.
-    pub fn set(&mut self, to: NodeId, flow: f64, lease: Lease<f64>) {
+    pub(super) fn set(&mut self, to: NodeId, flow: f64, lease: Lease<f64>) {
         let plan = Plan { to, reliability: 1.0, flow: 0.0 };
         if self.to(to).is_none() {
             self.plan(plan, false, None, 0);

@@ -36,7 +36,7 @@ pub(super) struct Terms<'a> {
 
 impl KeptFlow {
     /// The lease of the sender.
-    pub const fn lease(&self) -> Lease<f64> {
+    pub(super) const fn lease(&self) -> Lease<f64> {
         self.lease
     }
 
@@ -55,7 +55,7 @@ impl KeptFlow {
     }
 
     /// What is left of it when what flows in circles has ended.
-    pub fn part_besides(&self, circles: &Circles) -> f64 {
+    pub(super) fn part_besides(&self, circles: &Circles) -> f64 {
         let all = self.lease.flow();
         (all - circles.set_aside_from(self.from)).clamp(0.0, all)
     }
@@ -98,19 +98,19 @@ impl KeptFlows {
         self.0.binary_search_by_key(&sender, |kept| kept.from)
     }
 
-    pub fn all(&self) -> &[KeptFlow] {
+    pub(super) fn all(&self) -> &[KeptFlow] {
         &self.0
     }
 
     /// Begins this control period: leases end.
-    pub fn pass(&mut self, period: u32) {
+    pub(super) fn pass(&mut self, period: u32) {
         self.0.iter_mut().for_each(|kept| kept.pass(period));
         self.0.retain(|kept| kept.lease.until() >= period);
     }
 
     /// A sender asks for a flow; returns whether it is a new request. That voids what was granted before, beyond what is
     /// in use.
-    pub fn receive_request(&mut self, from: NodeId, request: FlowRequest, period: u32) -> bool {
+    pub(super) fn receive_request(&mut self, from: NodeId, request: FlowRequest, period: u32) -> bool {
         let FlowRequest { number, held, wanted } = request;
         let known = self.place_of(from);
         if known.is_ok_and(|at| number <= self.0[at].asked) {
@@ -127,42 +127,42 @@ impl KeptFlows {
     }
 
     /// The robots that may send to this one.
-    pub fn senders(&self) -> impl Iterator<Item = NodeId> {
+    pub(super) fn senders(&self) -> impl Iterator<Item = NodeId> {
         self.0.iter().filter(|kept| kept.lease.flow() > 0.0).map(|kept| kept.from)
     }
 
     /// What each sender may use.
-    pub fn granted(&self) -> impl Iterator<Item = (NodeId, f64)> {
+    pub(super) fn granted(&self) -> impl Iterator<Item = (NodeId, f64)> {
         self.0.iter().map(|kept| (kept.from, kept.lease.flow()))
     }
 
     /// What this node may send.
-    pub fn granted_to(&self, node: NodeId) -> f64 {
+    pub(super) fn granted_to(&self, node: NodeId) -> f64 {
         self.place_of(node).map_or(0.0, |at| self.0[at].lease.flow())
     }
 
     /// What all may send.
-    pub fn granted_in_all(&self) -> f64 {
+    pub(super) fn granted_in_all(&self) -> f64 {
         self.granted().map(|(_, flow)| flow).sum()
     }
 
     /// What senders want beyond what they may use.
-    pub fn wanted_beyond(&self) -> f64 {
+    pub(super) fn wanted_beyond(&self) -> f64 {
         self.0.iter().map(|kept| (kept.wanted - kept.lease.flow()).max(0.0)).sum()
     }
 
     /// Whether a request waits for an answer, or a lease to be renewed.
-    pub fn have_unmet(&self, period: u32) -> bool {
+    pub(super) fn have_unmet(&self, period: u32) -> bool {
         self.0.iter().any(|kept| kept.is_unmet() || kept.waits(period))
     }
 
     /// The control periods after which less is promised if no grant is renewed.
-    pub fn ends(&self) -> impl Iterator<Item = u32> {
+    pub(super) fn ends(&self) -> impl Iterator<Item = u32> {
         self.0.iter().flat_map(|kept| ends(&kept.lease))
     }
 
     /// What is promised, up to each control period after which that is less if no grant is renewed.
-    pub fn promises(&self, period: u32) -> impl Iterator<Item = (u32, f64)> {
+    pub(super) fn promises(&self, period: u32) -> impl Iterator<Item = (u32, f64)> {
         let mut ends: Vec<u32> = self.ends().chain([period]).collect();
         ends.sort_unstable();
         ends.dedup();
@@ -171,7 +171,7 @@ impl KeptFlows {
     }
 
     /// Answers requests, and renews what is about to end.
-    pub fn grant(&mut self, terms: &Terms<'_>) -> impl Iterator<Item = (NodeId, FlowGrant)> {
+    pub(super) fn grant(&mut self, terms: &Terms<'_>) -> impl Iterator<Item = (NodeId, FlowGrant)> {
         let mut spare = Spare::of(terms.spare);
         self.0.iter_mut().filter_map(move |kept| {
             let grant = kept.grant(terms, &mut spare)?;
@@ -183,12 +183,12 @@ impl KeptFlows {
 #[cfg(test)]
 impl KeptFlows {
     /// What is kept for a sender, and the number of its last request.
-    pub fn of(&self, sender: NodeId) -> Option<(Lease<f64>, RequestNumber)> {
+    pub(super) fn of(&self, sender: NodeId) -> Option<(Lease<f64>, RequestNumber)> {
         self.place_of(sender).ok().map(|at| (self.0[at].lease, self.0[at].asked))
     }
 
     /// This much is kept for a sender that has asked.
-    pub fn set(&mut self, sender: NodeId, lease: Lease<f64>) {
+    pub(super) fn set(&mut self, sender: NodeId, lease: Lease<f64>) {
         if let Ok(at) = self.place_of(sender) {
             self.0[at].lease = lease;
         }

@@ -173,12 +173,12 @@ pub(super) fn lease_of(longest_wait: usize) -> u32 {
 
 impl Reservation {
     /// What is held of a link ends with it.
-    pub fn drop_flows_without_link(&mut self, has_link: impl Fn(NodeId) -> bool) {
+    pub(super) fn drop_flows_without_link(&mut self, has_link: impl Fn(NodeId) -> bool) {
         self.held.retain(has_link);
     }
 
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
-    pub fn ask_for_flows(
+    pub(super) fn ask_for_flows(
         &mut self,
         context: Context<'_>,
         plans: impl Iterator<Item = Plan>,
@@ -217,7 +217,7 @@ impl Reservation {
 
     /// Takes in the requests and grants of the round; asks again, every few rounds, where there is no
     /// answer.
-    pub fn take_in_requests(
+    pub(super) fn take_in_requests(
         &mut self,
         context: Context<'_>,
         lease: u32,
@@ -236,52 +236,52 @@ impl Reservation {
     }
 
     /// Whether a request or a grant has been received that has not been taken in.
-    pub const fn has_news(&self) -> bool {
+    pub(super) const fn has_news(&self) -> bool {
         self.has_news
     }
 
     /// Whether it asks again, or looks for circles, if it receives nothing.
-    pub fn asks_again(&self) -> bool {
+    pub(super) fn asks_again(&self) -> bool {
         !self.held.are_answered() || self.circles.are_looked_for()
     }
 
     /// Whether packets flow to this node.
-    pub fn sends_to(&self, node: NodeId) -> bool {
+    pub(super) fn sends_to(&self, node: NodeId) -> bool {
         self.held.flows_to(node)
     }
 
     /// Whether it has ever asked this node for a flow over the link that it has to it now.
-    pub fn has_asked(&self, node: NodeId) -> bool {
+    pub(super) fn has_asked(&self, node: NodeId) -> bool {
         self.held.has_asked(node)
     }
 
     /// The robots that may send to this one.
-    pub fn senders(&self) -> impl Iterator<Item = NodeId> {
+    pub(super) fn senders(&self) -> impl Iterator<Item = NodeId> {
         self.kept.senders()
     }
 
     /// T_ij of the flows in use, ascending.
-    pub fn loads(&self) -> impl Iterator<Item = (NodeId, f64)> {
+    pub(super) fn loads(&self) -> impl Iterator<Item = (NodeId, f64)> {
         self.held.loads()
     }
 
     /// Σ_j F_ij of the flows in use.
-    pub fn outflow(&self) -> f64 {
+    pub(super) fn outflow(&self) -> f64 {
         self.held.outflow()
     }
 
     /// What others may send, ascending.
-    pub fn granted(&self) -> impl Iterator<Item = (NodeId, f64)> {
+    pub(super) fn granted(&self) -> impl Iterator<Item = (NodeId, f64)> {
         self.kept.granted()
     }
 
     /// A sender asks for a flow.
-    pub fn receive_request(&mut self, context: Context<'_>, from: NodeId, request: FlowRequest) {
+    pub(super) fn receive_request(&mut self, context: Context<'_>, from: NodeId, request: FlowRequest) {
         self.has_news |= self.kept.receive_request(from, request, context.period);
     }
 
     /// A receiver answers a request.
-    pub fn receive_grant(&mut self, context: Context<'_>, from: NodeId, grant: FlowGrant) {
+    pub(super) fn receive_grant(&mut self, context: Context<'_>, from: NodeId, grant: FlowGrant) {
         self.has_news |= self.held.receive_grant(from, grant, context.period);
     }
 
@@ -358,7 +358,7 @@ impl Reservation {
 #[cfg(test)]
 impl Reservation {
     /// So much flows to this node, over a lease that lasts.
-    pub fn sends(&mut self, to: NodeId, flow: f64) {
+    pub(super) fn sends(&mut self, to: NodeId, flow: f64) {
         self.held.set(to, flow, Lease::of(f64::INFINITY, u32::MAX));
     }
 }

@@ -43,7 +43,7 @@ pub(super) struct Alone {
 }
 
 impl Alone {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let site = Arc::new(Site::new(&hall()).expect("its numbers make sense"));
         let mut neighbours = Neighbours::default();
         for heard in [beacon(NEXT, west(1.0), fixed(13, 14), &[13, 14]), access_point(east(1.2))] {
@@ -76,13 +76,13 @@ impl Alone {
     }
 
     /// The plan, F_ij for each receiver, and what is sent once it stands.
-    pub fn plans(&mut self, flows: &[f64]) -> Vec<(Destination, Message)> {
+    pub(super) fn plans(&mut self, flows: &[f64]) -> Vec<(Destination, Message)> {
         self.plans.iter_mut().zip(flows).for_each(|(plan, &flow)| plan.flow = flow);
         self.asks()
     }
 
     /// What is sent once the plan stands.
-    pub fn asks(&mut self) -> Vec<(Destination, Message)> {
+    pub(super) fn asks(&mut self) -> Vec<(Destination, Message)> {
         let Alone { neighbours, negotiation, .. } = self.clone();
         let plans = self.plans.clone().into_iter();
         self.step(|reservation, context, outputs| {
@@ -93,17 +93,17 @@ impl Alone {
     }
 
     /// What is sent in a round of the reservation.
-    pub fn settles(&mut self) -> Vec<(Destination, Message)> {
+    pub(super) fn settles(&mut self) -> Vec<(Destination, Message)> {
         self.step(|reservation, context, outputs| {
             reservation.take_in_requests(context, lease_of(0), outputs);
         })
     }
 
-    pub fn receives_request(&mut self, from: NodeId, request: FlowRequest) {
+    pub(super) fn receives_request(&mut self, from: NodeId, request: FlowRequest) {
         self.step(|reservation, context, _| reservation.receive_request(context, from, request));
     }
 
-    pub fn receives_grant(&mut self, from: NodeId, grant: FlowGrant) {
+    pub(super) fn receives_grant(&mut self, from: NodeId, grant: FlowGrant) {
         self.step(|reservation, context, _| reservation.receive_grant(context, from, grant));
     }
 
@@ -114,7 +114,7 @@ impl Alone {
     }
 
     /// Access points and robots are received all the time.
-    pub fn receives_all(&mut self) {
+    pub(super) fn receives_all(&mut self) {
         self.neighbours.iter_mut().for_each(|it| it.heard_in = self.period);
     }
 

@@ -23,24 +23,24 @@ pub(super) struct Balance {
 
 impl Balance {
     /// A control period begins: no flow is known.
-    pub fn begin_period(&mut self) {
+    pub(super) fn begin_period(&mut self) {
         self.inflow = 0.0;
         self.inflows.clear();
         self.is_unsettled = true;
     }
 
     /// c_i.
-    pub const fn residual(&self) -> f64 {
+    pub(super) const fn residual(&self) -> f64 {
         self.residual
     }
 
     /// Σ_j F_ji, as far as it is known.
-    pub const fn inflow(&self) -> f64 {
+    pub(super) const fn inflow(&self) -> f64 {
         self.inflow
     }
 
     /// A neighbour reports the flow that it sends to this robot.
-    pub fn receive_flow(&mut self, from: NodeId, flow: f64) {
+    pub(super) fn receive_flow(&mut self, from: NodeId, flow: f64) {
         self.is_unsettled = true;
         match self.inflows.binary_search_by_key(&from, |&(sender, _)| sender) {
             Ok(at) if flow > 0.0 => self.inflows[at].1 = flow,
@@ -53,40 +53,40 @@ impl Balance {
     }
 
     /// This much more flows in than the senders have reported.
-    pub fn receive_more(&mut self, more: f64) {
+    pub(super) fn receive_more(&mut self, more: f64) {
         self.inflow += more;
     }
 
     /// Flows to others have changed.
-    pub const fn note_new_outflow(&mut self) {
+    pub(super) const fn note_new_outflow(&mut self) {
         self.is_unsettled = true;
     }
 
     /// Σ_j F_ji of the flows that the senders have reported.
-    pub fn add_up_inflow(&mut self) {
+    pub(super) fn add_up_inflow(&mut self) {
         self.inflow = self.inflows.iter().map(|(_, flow)| flow).sum();
     }
 
     /// c_i of the flows that are known now, which are added up.
-    pub fn residual_now(&mut self, links: &Links, context: Context<'_>) -> f64 {
+    pub(super) fn residual_now(&mut self, links: &Links, context: Context<'_>) -> f64 {
         self.add_up_inflow();
         links.known_outflow(context) - self.inflow - context.rate
     }
 
     /// All flows are known: eq. (5).
-    pub fn settle(&mut self, links: &Links, context: Context<'_>) {
+    pub(super) fn settle(&mut self, links: &Links, context: Context<'_>) {
         if std::mem::take(&mut self.is_unsettled) || !context.caches() {
             self.residual = self.residual_now(links, context);
         }
     }
 
     /// Whether a flow may have changed since the residual was settled.
-    pub const fn is_unsettled(&self) -> bool {
+    pub(super) const fn is_unsettled(&self) -> bool {
         self.is_unsettled
     }
 
     /// The flows of the period are those in use and what others may send: c_i of eq. (5) is what these leave.
-    pub fn adopt(
+    pub(super) fn adopt(
         &mut self,
         context: Context<'_>,
         outflow: f64,
@@ -101,14 +101,14 @@ impl Balance {
     }
 
     /// Whether the routes cannot carry the rates: c_i < −c_min.
-    pub fn is_infeasible(&self, context: Context<'_>) -> bool {
+    pub(super) fn is_infeasible(&self, context: Context<'_>) -> bool {
         self.residual < -context.site.settings.residual_tolerance - RESIDUAL_ROUNDING
     }
 }
 
 #[cfg(test)]
 impl Balance {
-    pub fn leave(&mut self, residual: f64) {
+    pub(super) fn leave(&mut self, residual: f64) {
         self.residual = residual;
     }
 }

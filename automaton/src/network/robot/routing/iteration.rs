@@ -42,7 +42,7 @@ pub(super) struct Iteration {
 
 impl Iteration {
     /// The iteration at the start of a mission.
-    pub fn new(method: RoutingMethod) -> Self {
+    pub(super) fn new(method: RoutingMethod) -> Self {
         let iterate = match method {
             RoutingMethod::Dual | RoutingMethod::AcceleratedDual => {
                 Iterate::Dual(DualState::default())
@@ -59,7 +59,7 @@ impl Iteration {
     }
 
     /// λ_i.
-    pub fn multiplier(&self) -> f64 {
+    pub(super) fn multiplier(&self) -> f64 {
         match &self.iterate {
             Iterate::Dual(state) => state.multiplier(),
             Iterate::Adal(state) => state.multiplier(),
@@ -67,17 +67,17 @@ impl Iteration {
     }
 
     /// ε of (14) for links that have been found anew.
-    pub const fn set_step_size(&mut self, step_size: f64) {
+    pub(super) const fn set_step_size(&mut self, step_size: f64) {
         self.step_size = step_size;
     }
 
     /// A control period begins.
-    pub const fn begin_period(&mut self) {
+    pub(super) const fn begin_period(&mut self) {
         (self.sent, self.has_settled) = (None, false);
     }
 
     /// The residual that the routes of the period before leave over the links as they are now.
-    pub fn begin(&mut self, residual: f64, links: &Links, context: Context<'_>) {
+    pub(super) fn begin(&mut self, residual: f64, links: &Links, context: Context<'_>) {
         if let Iterate::Adal(state) = &mut self.iterate {
             let reserve = context.site.settings.routing_reserve;
             state.measure(residual, reserve, links.between_robots(context));
@@ -85,7 +85,7 @@ impl Iteration {
     }
 
     /// Sends how the equation c_i ≥ η stands: in the first iteration of a period, and when that has changed.
-    pub fn send_report(&mut self, parent: Option<NodeId>, outputs: &mut NodeOutputs) {
+    pub(super) fn send_report(&mut self, parent: Option<NodeId>, outputs: &mut NodeOutputs) {
         let report = match &self.iterate {
             Iterate::Adal(state) => state.report(),
             Iterate::Dual(state) => {
@@ -98,18 +98,18 @@ impl Iteration {
     }
 
     /// A neighbour has reported a new multiplier.
-    pub const fn note_new_multiplier(&mut self) {
+    pub(super) const fn note_new_multiplier(&mut self) {
         self.has_new_multipliers = true;
     }
 
     /// A flow to this robot has changed.
-    pub const fn note_new_flow(&mut self) {
+    pub(super) const fn note_new_flow(&mut self) {
         self.has_settled = false;
     }
 
     /// The primal iteration (13), or that of ADAL. Shares that minimise the local Lagrangian do so until a multiplier
     /// changes.
-    pub fn primal_step(&mut self, links: &mut Links, context: Context<'_>) {
+    pub(super) fn primal_step(&mut self, links: &mut Links, context: Context<'_>) {
         let has_new_multipliers = std::mem::take(&mut self.has_new_multipliers);
         let multiplier = self.multiplier();
         match &mut self.iterate {
@@ -127,7 +127,7 @@ impl Iteration {
     }
 
     /// The dual iteration (14), or that of ADAL.
-    pub fn dual_step(&mut self, residual: f64, links: &Links, context: Context<'_>) {
+    pub(super) fn dual_step(&mut self, residual: f64, links: &Links, context: Context<'_>) {
         let is_known = || self.step_size.to_bits() == links.safe_dual_step(context).to_bits();
         debug_assert!(context.may_skip(is_known), "robot {}: an old step size", context.id);
         let settings = &context.site.settings;
@@ -151,7 +151,7 @@ impl Iteration {
     }
 
     /// Whether further iterations change nothing, as long as nothing new is received and all flows are sent.
-    pub const fn is_at_rest(&self) -> bool {
+    pub(super) const fn is_at_rest(&self) -> bool {
         self.has_settled && !self.has_new_multipliers
     }
 }

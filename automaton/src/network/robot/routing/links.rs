@@ -95,7 +95,7 @@ impl RouteLink {
 
 impl Links {
     /// The links to these receivers, which are ascending, with what is known of them from before.
-    pub fn to(&self, receivers: &[Receiver], context: Context<'_>) -> Links {
+    pub(super) fn to(&self, receivers: &[Receiver], context: Context<'_>) -> Links {
         let settings = &context.site.settings;
         let (aversion, link_model) = (settings.slope_aversion, &context.site.link);
         let mut found = Links::default();
@@ -118,35 +118,35 @@ impl Links {
     }
 
     /// Whether these are the same links, and known as well, apart from what a control period plans.
-    pub fn are_those_of(&self, found: &Links) -> bool {
+    pub(super) fn are_those_of(&self, found: &Links) -> bool {
         let mut table = self.table.clone();
         table.iter_mut().for_each(RouteLink::begin_period);
         (&table, &self.terms) == (&found.table, &found.terms)
     }
 
     /// A control period begins: shares are as the routing method left them, and no flow has been sent.
-    pub fn begin_period(&mut self) {
+    pub(super) fn begin_period(&mut self) {
         self.table.iter_mut().for_each(RouteLink::begin_period);
         self.expected = 0;
         self.has_unsent = true;
     }
 
-    pub fn all(&self) -> &[RouteLink] {
+    pub(super) fn all(&self) -> &[RouteLink] {
         &self.table
     }
 
     /// Where the link to this node is.
-    pub fn place_of(&self, node: NodeId) -> Option<usize> {
+    pub(super) fn place_of(&self, node: NodeId) -> Option<usize> {
         self.table.binary_search_by_key(&node, |link| link.to).ok()
     }
 
     /// Whether one of them stays only until its flow has ended.
-    pub fn has_retiring(&self) -> bool {
+    pub(super) fn has_retiring(&self) -> bool {
         self.table.iter().any(|link| link.is_retiring)
     }
 
     /// Stores the report of a node; returns whether there is a link to it and the report differs from its last.
-    pub fn receive_report(&mut self, from: NodeId, report: NeighbourReport) -> bool {
+    pub(super) fn receive_report(&mut self, from: NodeId, report: NeighbourReport) -> bool {
         self.terms_of(from).is_some_and(|terms| terms.report.replace(report) != Some(report))
     }
 
@@ -169,7 +169,7 @@ impl Links {
     }
 
     /// The links as (13) sees them.
-    pub fn offers(&self) -> Vec<LinkOffer> {
+    pub(super) fn offers(&self) -> Vec<LinkOffer> {
         let offer = |(link, terms): (&RouteLink, &LinkTerms)| LinkOffer {
             reliability: link.reliability,
             weight: terms.weight,
@@ -179,7 +179,7 @@ impl Links {
     }
 
     /// The links as ADAL sees them.
-    pub fn adal_links(&self) -> Vec<AdalLink> {
+    pub(super) fn adal_links(&self) -> Vec<AdalLink> {
         let link = |(link, terms): (&RouteLink, &LinkTerms)| AdalLink {
             reliability: link.reliability,
             weight: terms.weight,
@@ -190,7 +190,7 @@ impl Links {
     }
 
     /// ε of (14), from the links that meet in the equation of the robot.
-    pub fn safe_dual_step(&self, context: Context<'_>) -> f64 {
+    pub(super) fn safe_dual_step(&self, context: Context<'_>) -> f64 {
         safe_step(self.with_terms().map(|(link, terms)| LinkCurvature {
             reliability: link.reliability,
             weight: terms.weight,
@@ -199,13 +199,13 @@ impl Links {
     }
 
     /// The reliabilities of the links to robots.
-    pub fn between_robots(&self, context: Context<'_>) -> impl Iterator<Item = f64> {
+    pub(super) fn between_robots(&self, context: Context<'_>) -> impl Iterator<Item = f64> {
         let to_robots = self.table.iter().filter(move |link| context.is_robot(link.to));
         to_robots.map(|link| link.reliability)
     }
 
     /// Takes over the shares that the routing method gives.
-    pub fn set_shares(&mut self, shares: impl IntoIterator<Item = f64>) {
+    pub(super) fn set_shares(&mut self, shares: impl IntoIterator<Item = f64>) {
         for (link, share) in self.table.iter_mut().zip(shares) {
             link.share = link.usable(share);
             link.iterate = link.share;
@@ -214,13 +214,13 @@ impl Links {
     }
 
     /// Whether its shares are those that the routing method gives, to the bit.
-    pub fn have_shares(&self, shares: impl IntoIterator<Item = f64>) -> bool {
+    pub(super) fn have_shares(&self, shares: impl IntoIterator<Item = f64>) -> bool {
         let mut given = self.table.iter().zip(shares);
         given.all(|(link, share)| link.usable(share).to_bits() == link.share.to_bits())
     }
 
     /// The shares are those of the flows in use: (receiver, T_ij), ascending.
-    pub fn adopt(&mut self, in_use: impl Iterator<Item = (NodeId, f64)>) {
+    pub(super) fn adopt(&mut self, in_use: impl Iterator<Item = (NodeId, f64)>) {
         let mut in_use = in_use.peekable();
         for link in &mut self.table {
             let share = in_use.next_if(|&(to, _)| to == link.to).map_or(0.0, |(_, share)| share);
@@ -231,7 +231,7 @@ impl Links {
     }
 
     /// Sends nothing more to this node; returns whether that is less than before.
-    pub fn relieve(&mut self, node: NodeId) -> bool {
+    pub(super) fn relieve(&mut self, node: NodeId) -> bool {
         let Some(at) = self.place_of(node) else { return false };
         let had_share = std::mem::take(&mut self.table[at].share) > 0.0;
         self.has_unsent |= had_share;
@@ -239,13 +239,13 @@ impl Links {
     }
 
     /// Sends less over all links, in proportion.
-    pub fn scale(&mut self, factor: f64) {
+    pub(super) fn scale(&mut self, factor: f64) {
         self.table.iter_mut().for_each(|link| link.share *= factor);
         self.has_unsent = true;
     }
 
     /// Sends this much in all, and what is missing over one link as far as there is time.
-    pub fn raise_outflow(&mut self, demand: f64, over: usize) {
+    pub(super) fn raise_outflow(&mut self, demand: f64, over: usize) {
         let share = |link: &RouteLink| Share { reliability: link.reliability, share: link.share };
         let mut shares: Vec<Share> = self.table.iter().map(share).collect();
         meet_demand(demand, &mut shares, over);
@@ -256,12 +256,12 @@ impl Links {
     }
 
     /// Σ_j F_ij.
-    pub fn outflow(&self) -> f64 {
+    pub(super) fn outflow(&self) -> f64 {
         self.table.iter().map(RouteLink::flow).sum()
     }
 
     /// Σ_j F_ij, without a look at the links where their flows are those that were sent.
-    pub fn known_outflow(&self, context: Context<'_>) -> f64 {
+    pub(super) fn known_outflow(&self, context: Context<'_>) -> f64 {
         if self.has_unsent || !context.caches() {
             return self.outflow();
         }
@@ -271,12 +271,12 @@ impl Links {
     }
 
     /// Whether shares have changed since their flows were sent.
-    pub const fn has_unsent(&self) -> bool {
+    pub(super) const fn has_unsent(&self) -> bool {
         self.has_unsent
     }
 
     /// Sends flows to their receivers, where they have changed; returns whether that was looked at.
-    pub fn send_flows(&mut self, context: Context<'_>, outputs: &mut NodeOutputs) -> bool {
+    pub(super) fn send_flows(&mut self, context: Context<'_>, outputs: &mut NodeOutputs) -> bool {
         if !std::mem::take(&mut self.has_unsent) {
             return false;
         }

@@ -55,7 +55,7 @@ pub(super) struct Survey {
 
 impl Routing {
     /// That of a robot with the rate r_i and without links.
-    pub fn new(method: RoutingMethod, rate: f64) -> Self {
+    pub(super) fn new(method: RoutingMethod, rate: f64) -> Self {
         Routing {
             rate,
             links: Links::default(),
@@ -69,18 +69,18 @@ impl Routing {
     }
 
     /// Whether its links have been found at this revision.
-    pub fn has_links_of(&self, revision: Revision) -> bool {
+    pub(super) fn has_links_of(&self, revision: Revision) -> bool {
         self.found_at.is_of(revision)
     }
 
     /// Whether a survey would find the links and the parent that it has.
-    pub fn would_find(&self, context: Context<'_>, survey: &Survey) -> bool {
+    pub(super) fn would_find(&self, context: Context<'_>, survey: &Survey) -> bool {
         let found = self.links.to(&survey.receivers, context);
         self.links.are_those_of(&found) && self.parent == survey.parent
     }
 
     /// Takes over the links of a survey. One that is retiring goes with its flow, and is looked for again.
-    pub fn find_links(&mut self, context: Context<'_>, survey: &Survey, revision: Revision) {
+    pub(super) fn find_links(&mut self, context: Context<'_>, survey: &Survey, revision: Revision) {
         self.links = self.links.to(&survey.receivers, context);
         self.parent = survey.parent;
         self.iteration.set_step_size(self.links.safe_dual_step(context));
@@ -91,7 +91,7 @@ impl Routing {
     }
 
     /// A control period's routes begin with what the routing method made of them in the period before.
-    pub fn begin_period(&mut self) {
+    pub(super) fn begin_period(&mut self) {
         self.links.begin_period();
         self.iteration.begin_period();
         self.sweep.begin_period();
@@ -99,18 +99,18 @@ impl Routing {
     }
 
     /// The flows of the period before are known over the links as they are now.
-    pub fn begin(&mut self, context: Context<'_>) {
+    pub(super) fn begin(&mut self, context: Context<'_>) {
         let residual = self.balance.residual_now(&self.links, context);
         self.iteration.begin(residual, &self.links, context);
     }
 
     /// Sends how its equation c_i ≥ η stands: in the first iteration of a period, and when that has changed.
-    pub fn send_report(&mut self, outputs: &mut NodeOutputs) {
+    pub(super) fn send_report(&mut self, outputs: &mut NodeOutputs) {
         self.iteration.send_report(self.parent, outputs);
     }
 
     /// A neighbour reports how its equation stands, and where its demand will go.
-    pub fn receive_report(
+    pub(super) fn receive_report(
         &mut self,
         context: Context<'_>,
         from: NodeId,
@@ -126,48 +126,48 @@ impl Routing {
     }
 
     /// The primal iteration (13), or that of ADAL.
-    pub fn primal_step(&mut self, context: Context<'_>) {
+    pub(super) fn primal_step(&mut self, context: Context<'_>) {
         self.iteration.primal_step(&mut self.links, context);
     }
 
     /// Sends its flows to their receivers, where they have changed.
-    pub fn send_flows(&mut self, context: Context<'_>, outputs: &mut NodeOutputs) {
+    pub(super) fn send_flows(&mut self, context: Context<'_>, outputs: &mut NodeOutputs) {
         if self.links.send_flows(context, outputs) {
             self.balance.note_new_outflow();
         }
     }
 
     /// A neighbour reports the flow that it sends to this robot.
-    pub fn receive_flow(&mut self, from: NodeId, flow: f64) {
+    pub(super) fn receive_flow(&mut self, from: NodeId, flow: f64) {
         self.balance.receive_flow(from, flow);
         self.iteration.note_new_flow();
     }
 
     /// The dual iteration (14), or that of ADAL.
-    pub fn dual_step(&mut self, context: Context<'_>) {
+    pub(super) fn dual_step(&mut self, context: Context<'_>) {
         let residual = self.balance.residual_now(&self.links, context);
         self.iteration.dual_step(residual, &self.links, context);
     }
 
     /// Whether further iterations change nothing, as long as nothing new is received.
-    pub const fn is_at_rest(&self) -> bool {
+    pub(super) const fn is_at_rest(&self) -> bool {
         self.iteration.is_at_rest() && !self.links.has_unsent()
     }
 
     /// All flows are known: eq. (5).
-    pub fn settle_residual(&mut self, context: Context<'_>) {
+    pub(super) fn settle_residual(&mut self, context: Context<'_>) {
         self.balance.settle(&self.links, context);
     }
 
     /// Whether further sweeps change nothing, as long as nothing new is received.
-    pub fn routes_stand(&self, context: Context<'_>) -> bool {
+    pub(super) fn routes_stand(&self, context: Context<'_>) -> bool {
         let has_news = self.links.has_unsent() || self.balance.is_unsettled();
         !has_news && self.sweep.is_over(self.is_infeasible(context))
     }
 
     /// The routes of the period are the flows in use, each with its share, ascending, and c_i is what they leave of what
     /// others may send, whether or not they do. Returns whether they carry the rates no more.
-    pub fn adopt(
+    pub(super) fn adopt(
         &mut self,
         context: Context<'_>,
         in_use: impl Iterator<Item = (NodeId, f64)>,
@@ -182,42 +182,42 @@ impl Routing {
     }
 
     /// The links over which it may send, ascending.
-    pub fn links(&self) -> &[RouteLink] {
+    pub(super) fn links(&self) -> &[RouteLink] {
         self.links.all()
     }
 
     /// Whether it has a link to this node.
-    pub fn has_link_to(&self, node: NodeId) -> bool {
+    pub(super) fn has_link_to(&self, node: NodeId) -> bool {
         self.links.place_of(node).is_some()
     }
 
     /// The links in use.
-    pub fn routes(&self) -> impl Iterator<Item = &RouteLink> {
+    pub(super) fn routes(&self) -> impl Iterator<Item = &RouteLink> {
         self.links().iter().filter(|link| link.share > 0.0)
     }
 
     /// h_i = Σ_j T_ij: the share of its time for which it sends.
-    pub fn load(&self) -> f64 {
+    pub(super) fn load(&self) -> f64 {
         self.routes().map(|link| link.share).sum()
     }
 
     /// r_i.
-    pub const fn rate(&self) -> f64 {
+    pub(super) const fn rate(&self) -> f64 {
         self.rate
     }
 
     /// λ_i.
-    pub fn multiplier(&self) -> f64 {
+    pub(super) fn multiplier(&self) -> f64 {
         self.iteration.multiplier()
     }
 
     /// c_i of eq. (5) at the last sample.
-    pub const fn residual(&self) -> f64 {
+    pub(super) const fn residual(&self) -> f64 {
         self.balance.residual()
     }
 
     /// Whether the routes cannot carry the rates: c_i < −c_min.
-    pub fn is_infeasible(&self, context: Context<'_>) -> bool {
+    pub(super) fn is_infeasible(&self, context: Context<'_>) -> bool {
         self.balance.is_infeasible(context)
     }
 }
@@ -225,13 +225,13 @@ impl Routing {
 #[cfg(test)]
 impl Routing {
     /// The shares of its links are these.
-    pub fn plans(&mut self, shares: &[f64]) {
+    pub(super) fn plans(&mut self, shares: &[f64]) {
         let receivers: Vec<NodeId> = self.links().iter().map(|link| link.to).collect();
         self.links.adopt(receivers.into_iter().zip(shares.iter().copied()));
     }
 
     /// It has this residual.
-    pub fn leaves(&mut self, residual: f64) {
+    pub(super) fn leaves(&mut self, residual: f64) {
         self.balance.leave(residual);
     }
 }

@@ -25,13 +25,13 @@ pub(super) struct Sweep {
 
 impl Sweep {
     /// A control period begins.
-    pub fn begin_period(&mut self) {
+    pub(super) fn begin_period(&mut self) {
         self.demands.clear();
         (self.has_no_reserve, self.has_shortage_news) = (false, false);
     }
 
     /// A neighbour will send its demand to this robot.
-    pub fn expect(&mut self, child: NodeId) {
+    pub(super) fn expect(&mut self, child: NodeId) {
         if let Err(at) = self.place_of(child) {
             self.demands.insert(at, (child, None));
         }
@@ -54,7 +54,7 @@ impl Sweep {
 
     /// Whether the robot has taken part in the first sweep, and has received nothing since that changes its flows, given
     /// whether its routes are infeasible.
-    pub const fn is_over(&self, is_infeasible: bool) -> bool {
+    pub(super) const fn is_over(&self, is_infeasible: bool) -> bool {
         self.is_first_over && !self.has_shortage_news && (self.has_no_reserve || !is_infeasible)
     }
 }
