@@ -127,6 +127,7 @@
 //!
 //! Without its default features the crate is this framework: it needs neither geometry nor a solver.
 
+#![warn(unreachable_pub)]
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
 
 // The command line speaks of this library by its name, as other programs do.

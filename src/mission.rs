@@ -86,10 +86,10 @@
 //! tables that are run can also be queried and drawn.
 //!
 //! ```
-//! use pleach::automaton::{diagram, network::duty_automaton};
+//! use pleach::automaton::{diagram, network::Automata};
 //! use pleach::discrete::network::{Activity, DutyEvent};
 //!
-//! let automaton = duty_automaton()?;
+//! let automaton = Automata::new()?.duty;
 //! let duties = automaton.table();
 //! assert_eq!(duties.next(Activity::Standby, DutyEvent::Elected), Ok(Activity::Leading));
 //! // A leaf services a task: it leaves only when another robot has taken its place.

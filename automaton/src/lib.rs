@@ -18,6 +18,8 @@
 //! behind the feature `network`, which is on by default; without it the framework needs neither
 //! geometry nor a solver.
 
+#![warn(unreachable_pub)]
+
 mod automaton;
 mod builder;
 mod chance;

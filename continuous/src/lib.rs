@@ -4,6 +4,7 @@
 //! for the robot network and requires the feature `network`, which is on by default; lengths there
 //! are in the scenario's own unit, and times in seconds.
 
+#![warn(unreachable_pub)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
 
 pub mod flow;

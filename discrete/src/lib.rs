@@ -28,6 +28,8 @@
 //! assert_eq!(refusal.to_string(), "no transition leaves location `off` on event `too warm`");
 //! ```
 
+#![warn(unreachable_pub)]
+
 mod location;
 pub mod network;
 mod superstate;

@@ -14,6 +14,8 @@
 //! assert!(picture.to_string().contains(r##"<line stroke="#1b1f24" x1="10" x2="110" y1="30" y2="30"/>"##));
 //! ```
 
+#![warn(unreachable_pub)]
+
 mod axis;
 mod paper;
 pub mod style;

@@ -78,6 +78,8 @@
 //! [`sides`] makes smooth expressions of those with kinks;
 //! [`course`] follows predicates over time, with [`enclosure`]s of moving quantities.
 
+#![warn(unreachable_pub)]
+
 pub mod course;
 mod crossing;
 mod derivative;

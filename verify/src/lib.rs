@@ -6,6 +6,7 @@
 //! of an automaton; [`network`] holds the properties of the robot network, with the feature of that name, which is on by
 //! default.
 
+#![warn(unreachable_pub)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
 
 mod draws;

@@ -35,7 +35,7 @@ mod site;
 pub mod user;
 mod wire;
 
-pub use access_point::{AccessPoint, attendance_automaton, round_automaton, service_automaton};
+pub use access_point::AccessPoint;
 pub use automata::{Automata, NamedRow};
 pub use composition::{KernelTimes, LONGEST_SETTLING, Network, NetworkError, RobotNode};
 pub use faulty_node::{Crash, FaultyNode, NodeFaults};
@@ -45,11 +45,8 @@ pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
 pub use renumbering::Renumbering;
-pub use robot::{
-    Robot, RobotView, SATURATED, attachment_automaton, control_automaton, duty_automaton,
-    exchange_automaton, mission_automaton,
-};
+pub use robot::{Robot, RobotView, SATURATED};
 #[cfg(feature = "abstraction")]
 pub use site::Measure;
 pub use site::{Site, SiteError};
-pub use user::{User, request_automaton};
+pub use user::User;

@@ -130,7 +130,7 @@ fn row<A: DataOf<Asked>, B: DataOf<Asked>>(
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
+pub(super) fn request_automaton() -> Result<RequestAutomaton, BuildError> {
     use RequestEvent as On;
     use UserAct::{Ask, CountPeriod, CountSilence, RestartClock};
     use guards::{access_point_missed, another_period, answer_heard, prepared, request_over};

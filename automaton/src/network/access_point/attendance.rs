@@ -64,8 +64,6 @@ pub struct Attendee {
 
 crate::observed! {
     impl Observed for Attendee as attendee;
-    /// What the guards of attendance read.
-    pub const ATTENDANCE_GLOSSARY;
     quantities {
         /// Control periods since the robot was heard of, or since the access point began.
         silence: f64::from(attendee.silence),
@@ -223,7 +221,7 @@ fn row<A: DataOf<Standing>, B: DataOf<Standing> + Copy>(
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
+pub(in crate::network) fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
     use AttendanceEvent as On;
     let expect = "others expect to hear it";
     Automaton::builder(ATTENDANCE, Attendance::Present)

@@ -38,14 +38,18 @@ use crate::automaton::TransitionError;
 use crate::located::{Holds, Place as _};
 use crate::node::{Input, Node};
 
+pub use attendance::AttendanceAutomaton;
 pub(super) use attendance::PATIENCE;
-pub use attendance::{ATTENDANCE_GLOSSARY, AttendanceAutomaton, attendance_automaton};
 use hearing::Audience;
 use roster::Roster;
-pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
+pub use rounds::{RoundAct, RoundActs, RoundAutomaton};
 use schedule::Schedule;
-pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
+pub use service::{ServiceAutomaton, ServiceEffect};
 use tasks::Tasks;
+
+pub(super) use {
+    attendance::attendance_automaton, rounds::round_automaton, service::service_automaton,
+};
 
 /// The first task is announced when the roster has not changed for this many rounds: news of two
 /// robots whose numbers of links to an access point differ by one arrive two rounds apart.

@@ -51,7 +51,10 @@ impl Roster {
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
-    pub(super) fn review(&mut self, automaton: &AttendanceAutomaton) -> Result<(), TransitionError> {
+    pub(super) fn review(
+        &mut self,
+        automaton: &AttendanceAutomaton,
+    ) -> Result<(), TransitionError> {
         self.attendees_mut().try_for_each(|attendee| attendee.review(automaton))
     }
 

@@ -112,7 +112,7 @@ fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
+pub(in crate::network) fn round_automaton() -> Result<RoundAutomaton, BuildError> {
     use RoundAct::{CallRoll, Deliberate, Forget, RestartClock, TellBeacon, TellUser};
     let wait = |point: &mut AccessPoint, duration: f64| point.schedule.pass(duration);
     Automaton::builder(ROUNDS, Round::Resting)

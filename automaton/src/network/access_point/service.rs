@@ -34,8 +34,6 @@ pub type ServiceAutomaton = Automaton<Service, ServiceEvent, AccessPoint>;
 
 crate::observed! {
     impl Observed for AccessPoint as point;
-    /// What the guards of access points read.
-    pub const ACCESS_POINT_GLOSSARY;
     quantities {
         /// τ: seconds since the last sample.
         clock: point.schedule.clock(),
@@ -686,7 +684,7 @@ fn gives_up<A: DataOf<Serving>>(guard: Guard) -> Row {
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
+pub(in crate::network) fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
     let notices = ["hears_election", "hears_progress", "hears_service", "hears_end"];
     Automaton::builder(SERVICE, Service::Gathering)
         .observing()

@@ -187,7 +187,7 @@ fn row<A: DataOf<Control>, B: DataOf<Control>>(
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
+pub(in crate::network) fn control_automaton() -> Result<ControlAutomaton, BuildError> {
     use Act::*;
     use StageEvent as On;
     Automaton::builder(CONTROL, Stage::Moving)

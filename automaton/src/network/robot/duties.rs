@@ -574,7 +574,7 @@ fn labels(step: &'static str) -> [&'static str; 16] {
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
+pub(in crate::network) fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
     use DutyEvent as On;
     Automaton::builder(DUTIES, Activity::Standby)
         .observing()

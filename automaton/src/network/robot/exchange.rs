@@ -271,7 +271,7 @@ where
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
+pub(in crate::network) fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
     use ExchangeEvent as On;
     Automaton::builder(EXCHANGE, ExchangeStage::Free)
         .observing()

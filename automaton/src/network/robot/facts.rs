@@ -38,8 +38,6 @@ macro_rules! facts {
 
         crate::observed! {
             impl Observed for Robot as $robot;
-            /// Quantities and propositions with what they say, in the order of their declaration.
-            pub const GLOSSARY;
             quantities {
                 $($(#[doc = $measure])+ $quantity: $robot.changes.facts().$quantity,)+
                 $($(#[doc = $live_measure])+ $live_quantity: $number,)+

@@ -125,7 +125,7 @@ fn detach(_: &Attached, _: &Robot, (): &mut ()) -> Detached {
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn attachment_automaton() -> Result<AttachmentAutomaton, BuildError> {
+pub(in crate::network) fn attachment_automaton() -> Result<AttachmentAutomaton, BuildError> {
     use AttachmentEvent as On;
     let name = "way of the parent, own post first";
     Automaton::builder(ATTACHMENT, Attachment::Detached)

@@ -182,7 +182,7 @@ fn resumed<A: DataOf<Mission>>() -> Row {
 ///
 /// # Errors
 /// Never with the table and guards of this crate; they are still checked.
-pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
+pub(in crate::network) fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     // A notice has one content; an election has a winner or not; at most one subgroup is moving.
     let notices = [

@@ -69,19 +69,24 @@ use pleach_discrete::network::{NodeId, NoticeId, Post, PostId, Role};
 
 #[cfg(feature = "abstraction")]
 pub(super) use abstraction::Numbers;
-pub use control::{Act, Acts, ControlAutomaton, control_automaton};
-pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
-pub use exchange::{Exchange, ExchangeAutomaton, ExchangeEffect, exchange_automaton};
-pub use facts::{Facts, GLOSSARY};
-pub use lineage::{AttachmentAutomaton, PlaceInTree, attachment_automaton};
+pub use control::{Act, Acts, ControlAutomaton};
+pub use duties::{DutyAutomaton, DutyEffect};
+pub use exchange::{Exchange, ExchangeAutomaton, ExchangeEffect};
+pub use facts::Facts;
+pub use lineage::{AttachmentAutomaton, PlaceInTree};
 pub use links::TreeLink;
-pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
+pub use mission::{MissionAutomaton, MissionEffect};
 pub use reservation::{FlowGrant, FlowRequest, GrantedPart, Probe, RequestNumber};
 pub use routing::RouteLink;
 pub use step::{RobotError, RobotFault};
-pub use target::{Targets, targets};
+pub use target::Targets;
 pub use team::SATURATED;
 pub use view::RobotView;
+
+pub(super) use {
+    control::control_automaton, duties::duty_automaton, exchange::exchange_automaton,
+    lineage::attachment_automaton, mission::mission_automaton, target::targets,
+};
 
 use crate::automaton::TransitionError;
 

@@ -15,7 +15,7 @@ use crate::network::duty::{Duty, Hop};
 pub type Targets = Laws<Activity, Robot, Point>;
 
 /// The target laws: Algorithm 2, and for robots that hold a post what brings them back to it.
-pub fn targets() -> Targets {
+pub(in crate::network) fn targets() -> Targets {
     use Activity::{
         AwaitingRelease, Bound, Following, Junction, Leading, Leaf, Relay, Shifting, Standby,
         Waiting,

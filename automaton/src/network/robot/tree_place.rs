@@ -240,7 +240,9 @@ impl TreePlace {
     }
 
     /// What decides on the parent that is looked for, and on what is passed on.
-    pub(super) const fn search(&self) -> (Option<Option<Anchor>>, Option<NodeId>, bool, &Confirmation) {
+    pub(super) const fn search(
+        &self,
+    ) -> (Option<Option<Anchor>>, Option<NodeId>, bool, &Confirmation) {
         (self.desired_parent, self.reattaches_to, self.awaits_confirmation, &self.confirmation)
     }
 }

@@ -110,7 +110,12 @@ impl KeptFlows {
 
     /// A sender asks for a flow; returns whether it is a new request. That voids what was granted before, beyond what is
     /// in use.
-    pub(super) fn receive_request(&mut self, from: NodeId, request: FlowRequest, period: u32) -> bool {
+    pub(super) fn receive_request(
+        &mut self,
+        from: NodeId,
+        request: FlowRequest,
+        period: u32,
+    ) -> bool {
         let FlowRequest { number, held, wanted } = request;
         let known = self.place_of(from);
         if known.is_ok_and(|at| number <= self.0[at].asked) {

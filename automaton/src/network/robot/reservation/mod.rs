@@ -276,7 +276,12 @@ impl Reservation {
     }
 
     /// A sender asks for a flow.
-    pub(super) fn receive_request(&mut self, context: Context<'_>, from: NodeId, request: FlowRequest) {
+    pub(super) fn receive_request(
+        &mut self,
+        context: Context<'_>,
+        from: NodeId,
+        request: FlowRequest,
+    ) {
         self.has_news |= self.kept.receive_request(from, request, context.period);
     }
 
