@@ -170,7 +170,7 @@ impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
 
     /// As [`new`](Self::new), where the state may lack the data that the target needs although the
     /// guard holds: to take the transition then is an error, and the state is as before.
-    pub(crate) fn where_known<P, A, B>(
+    pub fn where_known<P, A, B>(
         event: E,
         guard: impl Into<Guard>,
         name: &str,

@@ -32,7 +32,7 @@
 
 mod location;
 pub mod network;
-mod superstate;
+pub mod superstate;
 mod table;
 mod urgency;
 pub mod vocabulary;

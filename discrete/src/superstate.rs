@@ -153,7 +153,7 @@ impl<L: Copy, E: Copy> Trigger<L, E> {
 }
 
 /// How many rows these rules stand for.
-pub(super) const fn rows_of<L: Copy, E: Copy>(rules: &[Rule<L, E>]) -> usize {
+pub const fn rows_of<L: Copy, E: Copy>(rules: &[Rule<L, E>]) -> usize {
     let (mut count, mut at) = (0, 0);
     while at < rules.len() {
         count += rules[at].source.locations().len();
@@ -167,7 +167,7 @@ pub(super) const fn rows_of<L: Copy, E: Copy>(rules: &[Rule<L, E>]) -> usize {
 ///
 /// # Panics
 /// Where there are no rules, or `N` is another number: in a constant that does not compile.
-pub(super) const fn expanded<L: Copy, E: Copy, const N: usize>(
+pub const fn expanded<L: Copy, E: Copy, const N: usize>(
     rules: &[Rule<L, E>],
 ) -> [Row<L, E>; N] {
     assert!(rows_of(rules) == N && N > 0, "there is another number of rows");
