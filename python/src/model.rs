@@ -4,10 +4,9 @@
 use crate::ModelError;
 use crate::data::{self, entries};
 use crate::trajectory::Trajectory;
-use pleach_library::automaton::builder::Builder;
 use pleach_library::automaton::check::Report;
 use pleach_library::automaton::{
-    self as models, Coordinate, Name, Record, Settings, diagram, edge,
+    self as models, Builder, Coordinate, Name, Record, Settings, diagram, from,
 };
 use pleach_library::guards::{Expression, ParseError, Predicate};
 use pleach_library::page::Drawing;
@@ -85,7 +84,7 @@ impl Automaton {
         then: Option<&Bound<'py, PyMapping>>,
         priority: u8,
     ) -> PyResult<PyRefMut<'py, Self>> {
-        let arrow = edge::from(Name::new(source)).on(Name::new(event)).to(Name::new(target));
+        let arrow = from(Name::new(source)).on(Name::new(event)).to(Name::new(target));
         let edge = match (must, may, at_once) {
             (Some(guard), None, None) => arrow.must(read_predicate(guard)?),
             (None, Some(guard), None) => arrow.may(read_predicate(guard)?),
