@@ -167,9 +167,7 @@ pub const fn rows_of<L: Copy, E: Copy>(rules: &[Rule<L, E>]) -> usize {
 ///
 /// # Panics
 /// Where there are no rules, or `N` is another number: in a constant that does not compile.
-pub const fn expanded<L: Copy, E: Copy, const N: usize>(
-    rules: &[Rule<L, E>],
-) -> [Row<L, E>; N] {
+pub const fn expanded<L: Copy, E: Copy, const N: usize>(rules: &[Rule<L, E>]) -> [Row<L, E>; N] {
     assert!(rows_of(rules) == N && N > 0, "there is another number of rows");
     let (mut first, mut rule) = (0, 0);
     while rules[first].source.locations().is_empty() {
