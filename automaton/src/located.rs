@@ -448,10 +448,10 @@ mod tests {
                 |bright: &Bright, _: &Room, _: &mut u8| Dim(bright.0 - 1),
             ))
             .build()
-            .unwrap();
+            .expect("the parts fit");
         let mut room = Room { lamp: Current::new(Lamp::Dark(Dark)), counted: 0 };
         let mut step = || {
-            automaton.step_in_place::<Lamp>(&mut room).unwrap();
+            automaton.step_in_place::<Lamp>(&mut room).expect("its guards have values");
             (Lamp::clone(&room.lamp), room.counted)
         };
         let bright = |counted| (Lamp::Bright(Bright(7)), counted);

@@ -78,12 +78,13 @@ fn one_by_one() -> Automaton<Pump, Command, Tank> {
 fn a_superstate_runs_like_its_locations() {
     let (together, apart) = (in_superstates(), one_by_one());
     assert_eq!(together.table().rows(), apart.table().rows());
-    let runs = [&together, &apart].map(|pump| pump.run_with(Settings::default(), 9.0).unwrap());
+    let runs =
+        [&together, &apart].map(|pump| pump.run_with(Settings::default(), 9.0).expect("it runs"));
     let jumps = runs.each_ref().map(|run| {
         run.jumps().iter().map(|jump| (jump.at, jump.label.clone())).collect::<Vec<_>>()
     });
     assert_eq!(jumps[0], jumps[1]);
-    let count = |name: &str| jumps[0].iter().filter(|(_, event)| event.to_string() == name).count();
+    let count = |name: &str| jumps[0].iter().filter(|(_, event)| *event == name).count();
     assert_eq!((count("stopped"), count("counted")), (1, 5));
     assert!(count("empty") > 2);
 }
@@ -136,7 +137,7 @@ fn a_superstate_of_which_one_location_differs_is_not_left_as_one() {
         .transition(from(Draining).on(Stopped).to(Off).may(always()))
         .transition(from(Flushing).on(Stopped).to(Off).may(level.at_most(0.3)))
         .build()
-        .unwrap();
+        .expect("the parts fit");
     let mermaid = diagram::mermaid(&pump);
     assert_eq!(mermaid.matches("stopped").count(), 3, "{mermaid}");
     assert_eq!(mermaid.matches("empty").count(), 1, "{mermaid}");
