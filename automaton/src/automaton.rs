@@ -188,7 +188,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         Builder::new(table, initial)
     }
 
-    /// The table: a row for every transition.
+    /// The table: a row for every transition, without [superstates](Self::superstates).
     pub fn table(&self) -> TransitionTable<'_, L, E> {
         TransitionTable::new(&self.rows)
     }

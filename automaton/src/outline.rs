@@ -214,8 +214,8 @@ impl Transition<'_> {
         self.source == self.target
     }
 
-    /// Whether it differs from another in nothing but its ends.
-    fn reads_like(&self, other: &Transition<'_>) -> bool {
+    /// Whether it reads like another in all but its ends; functions read alike if they have one name.
+    pub(crate) fn reads_like(&self, other: &Transition<'_>) -> bool {
         (self.event, self.urgency, self.priority) == (other.event, other.urgency, other.priority)
             && self.guard == other.guard
             && self.effect.to_string() == other.effect.to_string()

@@ -1,7 +1,7 @@
 //! What leaves a superstate leaves each of its locations, in runs, checks and drawings.
 
 use pleach_automaton::{
-    Automaton, BuildError, Builder, Settings, coordinates, diagram, from, from_any,
+    Automaton, BuildError, Builder, Edge, Settings, coordinates, diagram, from, from_any,
 };
 use pleach_discrete::{Superstate, vocabulary};
 use pleach_guards::always;
@@ -89,6 +89,14 @@ fn a_superstate_runs_like_its_locations() {
     assert!(count("empty") > 2);
 }
 
+/// What each arrow of a Mermaid diagram leads from and to.
+fn arrows(pump: &Automaton<Pump, Command, Tank>) -> Vec<String> {
+    let mermaid = diagram::mermaid(pump);
+    let arrows = mermaid.lines().filter(|line| line.contains("-->"));
+    let ends = |line: &str| line.split(" : ").next().unwrap_or_default().trim().to_owned();
+    arrows.map(ends).collect()
+}
+
 #[test]
 fn diagrams_show_a_superstate_and_what_leaves_it_once() {
     let pump = in_superstates();
@@ -100,22 +108,15 @@ stateDiagram-v2
             l2 : draining
 ";
     assert!(mermaid.starts_with(start), "{mermaid}");
-    let arrows: Vec<&str> = mermaid.lines().filter(|line| line.contains("-->")).collect();
-    let ends = |line: &str| line.split(" : ").next().unwrap_or_default().trim().to_owned();
-    assert_eq!(
-        arrows.into_iter().map(ends).collect::<Vec<_>>(),
-        ["[*] --> l1", "l1 --> l2", "l2 --> l3", "s1 --> l1", "s0 --> l0", "s0 --> s0"]
-    );
+    let expected =
+        "[*] --> l1, l1 --> l2, l2 --> l3, s1 --> l1, s0 --> l0, l1 --> l1, l2 --> l2, l3 --> l3";
+    assert_eq!(arrows(&pump).join(", "), expected);
 
     let dot = diagram::dot(&pump);
     assert!(dot.contains("compound=true") && dot.contains("subgraph cluster1"), "{dot}");
-    assert_eq!(dot.matches("ltail=cluster0").count(), 1, "{dot}");
-    assert!(dot.contains("running: counted"), "{dot}");
+    assert_eq!(dot.matches("ltail=cluster").count(), 2, "{dot}");
     let opened = dot.matches('{').count();
     assert!(opened == 3 && opened == dot.matches('}').count(), "{dot}");
-
-    let svg = diagram::svg(&pump);
-    assert!(svg.contains("running") && svg.contains("outward"), "{svg}");
 
     let table = diagram::table(&pump);
     for line in
@@ -123,24 +124,78 @@ stateDiagram-v2
     {
         assert!(table.contains(line), "{table}");
     }
+    for row in ["| **counted** | *running*, stays |", "| **stopped** | *running* → off |"] {
+        assert!(table.contains(row), "{table}");
+    }
     assert_eq!(table.matches("**full**").count(), 2, "they differ: {table}");
-    assert_eq!(table.matches("**counted**").count(), 1, "{table}");
 }
 
-/// A drawing shows one arrow only where all locations have it.
+/// Locations of a superstate have their columns beside each other, and those of an inner one within.
+#[test]
+fn columns_of_a_superstate_are_neighbours() {
+    const OUTER: Superstate<Pump> = Superstate::new("outer", &[Off, Draining, Flushing]);
+    const INNER: Superstate<Pump> = Superstate::new("inner", &[Off, Flushing]);
+    let stop = |superstate: Superstate<Pump>| from_any(superstate).on(Stopped).stay().may(always());
+    let pump =
+        pump().transition(stop(INNER)).transition(stop(OUTER)).build().expect("the parts fit");
+    let svg = diagram::svg(&pump);
+    let boxes = svg.split("<rect").filter(|part| part.contains("data-location"));
+    let attribute = |part: &str, name: &str| -> String {
+        let value = part.split(&format!(" {name}=\"")).nth(1).unwrap_or_default();
+        value.split('"').next().unwrap_or_default().to_owned()
+    };
+    let mut places: Vec<(f64, String)> = boxes
+        .map(|part| {
+            (attribute(part, "x").parse().expect("a number"), attribute(part, "data-location"))
+        })
+        .collect();
+    places.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let names: Vec<&str> = places.iter().map(|(_, name)| &**name).collect();
+    assert_eq!(names, ["off", "flushing", "draining", "filling"]);
+}
+
+/// A drawing shows one arrow only where all locations have it, and as many as they have.
 #[test]
 fn a_superstate_of_which_one_location_differs_is_not_left_as_one() {
     let Tank { level, .. } = Tank::coordinates();
+    let stopped = |location: Pump| from(location).on(Stopped).to(Off).may(always());
+    let drawn = |third: Vec<Edge<Pump, Command, Tank>>| {
+        let pump = pump()
+            .transition(from_any(OUTWARD).on(Empty).to(Off).must(level.at_most(0.25)))
+            .transition(from_any(RUNNING).on(Counted).to(Off).may(always()))
+            .transition(stopped(Draining));
+        let pump = third.into_iter().fold(pump, |pump, edge| pump.transition(edge)).build();
+        let arrows = arrows(&pump.expect("the parts fit"));
+        arrows.into_iter().filter(|arrow| arrow.ends_with("--> l0")).collect::<Vec<_>>().join(", ")
+    };
+    assert_eq!(drawn(vec![stopped(Flushing)]), "s1 --> l0, s0 --> l0, s1 --> l0");
+    let apart = "s1 --> l0, s0 --> l0, l2 --> l0, l3 --> l0";
+    for differs in [
+        from(Flushing).on(Stopped).to(Off).may(level.at_most(0.3)),
+        from(Flushing).on(Stopped).to(Off).must(always()),
+        stopped(Flushing).priority(1),
+        stopped(Flushing).then([level.becomes(0.0)]),
+    ] {
+        assert_eq!(drawn(vec![differs]), apart);
+    }
+    let elsewhere = from(Flushing).on(Stopped).to(Filling).may(always());
+    assert_eq!(drawn(vec![elsewhere]), "s1 --> l0, s0 --> l0, l2 --> l0");
+    let twice = vec![stopped(Flushing), stopped(Draining), stopped(Flushing)];
+    assert_eq!(drawn(twice), "s1 --> l0, s0 --> l0, s1 --> l0, s1 --> l0");
+}
+
+/// Two transitions from one location on one event are two rows, whatever they have in common.
+#[test]
+fn a_table_shows_every_transition() {
     let pump = pump()
-        .transition(from_any(OUTWARD).on(Empty).to(Filling).must(level.at_most(0.25)))
-        .transition(from(Filling).on(Stopped).to(Off).may(always()))
-        .transition(from(Draining).on(Stopped).to(Off).may(always()))
-        .transition(from(Flushing).on(Stopped).to(Off).may(level.at_most(0.3)))
+        .transition(from_any(OUTWARD).on(Stopped).to(Off).may(always()))
+        .transition(from_any(OUTWARD).on(Stopped).to(Filling).may(always()))
         .build()
         .expect("the parts fit");
-    let mermaid = diagram::mermaid(&pump);
-    assert_eq!(mermaid.matches("stopped").count(), 3, "{mermaid}");
-    assert_eq!(mermaid.matches("empty").count(), 1, "{mermaid}");
+    let table = diagram::table(&pump);
+    for way in ["*outward* → off", "*outward* → filling"] {
+        assert!(table.contains(way), "{table}");
+    }
 }
 
 #[test]
@@ -158,6 +213,9 @@ fn superstates_that_do_not_nest_are_refused() {
     assert_eq!(with(&[RUNNING, TWO]), Ok(()));
     let overlap = BuildError::SuperstatesOverlap { superstates: ["outward", "inward"] };
     assert_eq!(with(&[OUTWARD, TWO]), Err(overlap));
+    const TWICE: Superstate<Pump> = Superstate::new("twice", &[Filling, Draining, Filling]);
+    let repeated = BuildError::RepeatedMember { superstate: "twice", location: "filling" };
+    assert_eq!(with(&[TWICE]), Err(repeated));
     assert_eq!(with(&[NONE]), Err(BuildError::EmptySuperstate { superstate: "none" }));
     assert_eq!(with(&[OFF]), Err(BuildError::SuperstateNameTaken { superstate: "off" }));
 }

@@ -54,7 +54,8 @@ pub struct Rule<L: 'static, E> {
 }
 
 impl<L> Superstate<L> {
-    /// These locations under this name.
+    /// These locations under this name. An automaton requires that the name is no location's or other superstate's, that
+    /// there are locations, each once, and that of two superstates which share locations one contains the other.
     pub const fn new(name: &'static str, members: &'static [L]) -> Self {
         Superstate { name, members }
     }
@@ -166,9 +167,10 @@ pub const fn rows_of<L: Copy, E: Copy>(rules: &[Rule<L, E>]) -> usize {
 /// locations of each.
 ///
 /// # Panics
-/// Where there are no rules, or `N` is another number: in a constant that does not compile.
+/// Where no rule has a location, or `N` is another number: in a constant that does not compile.
 pub const fn expanded<L: Copy, E: Copy, const N: usize>(rules: &[Rule<L, E>]) -> [Row<L, E>; N] {
-    assert!(rows_of(rules) == N && N > 0, "there is another number of rows");
+    assert!(rows_of(rules) == N, "there is another number of rows");
+    assert!(N > 0, "no rule has a location");
     let (mut first, mut rule) = (0, 0);
     while rules[first].source.locations().is_empty() {
         first += 1;
@@ -187,7 +189,8 @@ pub const fn expanded<L: Copy, E: Copy, const N: usize>(rules: &[Rule<L, E>]) ->
 }
 
 /// A constant [`TransitionTable`](crate::TransitionTable) of [rules](crate::Rule): after the types of its locations and
-/// events and a semicolon, one rule after another. Where each rule leaves one location, its rows are the rules.
+/// events and a semicolon, one rule after another. Rules begin with [`from`](crate::from) and
+/// [`from_any`](crate::from_any) of this package; those of `pleach_automaton` make transitions with guards.
 #[macro_export]
 macro_rules! transitions {
     ($location:ty, $event:ty; $($rule:expr),+ $(,)?) => {{
@@ -246,10 +249,13 @@ mod tests {
 
     #[test]
     fn a_superstate_is_listed_once() {
+        const NOWHERE: Superstate<Place> = Superstate::new("nowhere", &[]);
         const TWICE: TransitionTable<Place, Sound> = transitions![Place, Sound;
+            from_any(NOWHERE).on(Silence).to(Out),
             from_any(INSIDE).on(Bell).to(Out),
             from_any(INSIDE).on(Whistle).to(Out),
         ];
-        assert!(TWICE.superstates().eq([INSIDE]));
+        assert!(TWICE.superstates().eq([NOWHERE, INSIDE]));
+        assert_eq!(TWICE.rows().len(), 4);
     }
 }

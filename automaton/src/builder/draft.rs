@@ -125,8 +125,8 @@ impl<'a> Draft<'a> {
     /// The first [`BuildError`] found: in the table, the guards, then in what is said about the
     /// locations.
     pub(super) fn check(&mut self) -> Result<(), BuildError> {
-        self.check_table()?;
         self.check_superstates()?;
+        self.check_table()?;
         self.match_transfers()?;
         self.check_parts()?;
         self.check_intervals()?;
@@ -164,7 +164,7 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// Superstates have names of their own and locations, and of two that share locations one contains the other.
+    /// Superstates have names of their own and locations, each once, and of two that share locations one contains the other.
     fn check_superstates(&self) -> Result<(), BuildError> {
         for (number, (name, members)) in self.parts.superstates.iter().enumerate() {
             let earlier = &self.parts.superstates[..number];
@@ -174,6 +174,11 @@ impl<'a> Draft<'a> {
             }
             if members.is_empty() {
                 return Err(BuildError::EmptySuperstate { superstate: name });
+            }
+            let mut later = members.iter().enumerate();
+            if let Some((_, member)) = later.find(|(at, member)| members[..*at].contains(member)) {
+                let location = self.locations[*member];
+                return Err(BuildError::RepeatedMember { superstate: name, location });
             }
             let includes =
                 |some: &[usize], others: &[usize]| others.iter().all(|it| some.contains(it));

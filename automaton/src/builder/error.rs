@@ -40,9 +40,9 @@ pub enum BuildError {
         /// The event of the rows.
         event: &'static str,
     },
-    /// A superstate is called like a location or another superstate.
+    /// A superstate is called like a location, or like another superstate with other members.
     #[error(
-        "superstate `{superstate}` is called like a location or another superstate: rename one"
+        "superstate `{superstate}` is called like a location, or like one with other members: rename one"
     )]
     SuperstateNameTaken {
         /// The name.
@@ -53,6 +53,14 @@ pub enum BuildError {
     EmptySuperstate {
         /// The name.
         superstate: &'static str,
+    },
+    /// A superstate names a location twice.
+    #[error("superstate `{superstate}` names location `{location}` twice: keep one")]
+    RepeatedMember {
+        /// The name of the superstate.
+        superstate: &'static str,
+        /// The location.
+        location: &'static str,
     },
     /// Two superstates share locations, and neither contains the other.
     #[error(
@@ -90,7 +98,7 @@ pub enum BuildError {
         /// What is wrong with the period or the phase, and what would be right.
         reason: String,
     },
-    /// An event has two guards or is sampled twice, or a location has two flows or two invariants.
+    /// An event has two guards, two transfers from one location or is sampled twice, or a location has two flows or two invariants.
     #[error("`{place}` is given its {part} twice: keep one")]
     GivenTwice {
         /// The event or the location.

@@ -8,8 +8,8 @@ use crate::automaton::Automaton;
 use crate::outline::Source;
 
 /// The automaton in the DOT language. Transitions that only may be taken are dashed, and those
-/// that happen at once are bold. A superstate is a cluster, from whose border its transitions
-/// lead; of one that ends inside, the label names the superstate.
+/// that happen at once are bold. A superstate is a cluster, from whose border transitions
+/// lead to the outside.
 pub fn dot<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     graph(&Sketch::of(&automaton.outline()))
 }
@@ -26,23 +26,14 @@ fn graph(sketch: &Sketch) -> String {
     }
     put_contents(sketch, None, 1, &mut text);
     text.push_str(&format!("    initial -> l{};\n", sketch.initial));
-    for arrow in &sketch.arrows {
-        let link = &sketch.links[arrow.transitions[0]];
-        let (mut lines, style) = (link.lines(), style(link.urgency));
-        let (source, target) = (link.source, arrow.target.unwrap_or(link.source));
-        let mut tail = String::new();
-        if let Source::Superstate(number) = arrow.source {
-            let (name, members) = &sketch.superstates[number];
-            // Graphviz draws no edge from the border of a cluster to its inside.
-            match members.contains(&target) {
-                true => lines[0] = format!("{name}: {}", lines[0]),
-                false => tail = format!(", ltail=cluster{number}"),
-            }
-        }
-        let label = quoted(&lines);
-        text.push_str(&format!(
-            "    l{source} -> l{target} [label={label}, style={style}{tail}];\n"
-        ));
+    for (source, link) in sketch.drawn_links() {
+        let (label, style) = (quoted(&link.lines()), style(link.urgency));
+        let tail = match source {
+            Source::Superstate(number) => format!(", ltail=cluster{number}"),
+            Source::Location(_) => String::new(),
+        };
+        let (from, to) = (link.source, link.target);
+        text.push_str(&format!("    l{from} -> l{to} [label={label}, style={style}{tail}];\n"));
     }
     text.push_str("}\n");
     text

@@ -8,7 +8,8 @@ use crate::automaton::Automaton;
 use crate::composition::Composition;
 use crate::outline::Source;
 
-/// The automaton as a Mermaid `stateDiagram-v2`. A superstate is a composite state, which its transitions leave.
+/// The automaton as a Mermaid `stateDiagram-v2`. A superstate is a composite state, from which transitions
+/// lead to the outside.
 pub fn mermaid<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     states(&Sketch::of(&automaton.outline()))
 }
@@ -17,14 +18,13 @@ fn states(sketch: &Sketch) -> String {
     let mut text = String::from("stateDiagram-v2\n");
     put_contents(sketch, None, 1, &mut text);
     text.push_str(&format!("    [*] --> l{}\n", sketch.initial));
-    for arrow in &sketch.arrows {
-        let source = match arrow.source {
+    for (source, link) in sketch.drawn_links() {
+        let source = match source {
             Source::Location(source) => format!("l{source}"),
             Source::Superstate(number) => format!("s{number}"),
         };
-        let target = arrow.target.map_or_else(|| source.clone(), |target| format!("l{target}"));
-        let label = escaped(&sketch.links[arrow.transitions[0]].lines().join(" "));
-        text.push_str(&format!("    {source} --> {target} : {label}\n"));
+        let (target, label) = (link.target, escaped(&link.lines().join(" ")));
+        text.push_str(&format!("    {source} --> l{target} : {label}\n"));
     }
     text
 }

@@ -5,7 +5,7 @@
 //! | --- | --- | --- |
 //! | [`mermaid`] | a Mermaid state diagram | Markdown pages |
 //! | [`dot`] | a graph in the DOT language | Graphviz |
-//! | [`svg`] | a picture: boxes and arcs, or for larger models columns and rows | everything else |
+//! | [`svg`] | a picture: boxes and arcs, or for larger models and superstates columns and rows | everything else |
 //! | [`table`] | the location × event table, with the guards, resets, flows and invariants | Markdown pages |
 //! | [`latex`] | the formal definition H = (Q, X, Init, f, Inv, E, G, R) | papers |
 //! | [`composition_mermaid`], [`composition_svg`] | the components side by side and what joins them | compositions |

@@ -3,7 +3,7 @@
 use pleach_discrete::Urgency;
 use pleach_guards::{Expression, Predicate, constant};
 
-use crate::outline::{self, Arrow, Effect, Motion, Outline, Transition};
+use crate::outline::{self, Arrow, Effect, Motion, Outline, Source, Transition};
 
 /// An automaton in words, without its types: diagrams only have to arrange it.
 #[derive(Clone, Debug)]
@@ -88,6 +88,23 @@ impl Sketch {
 }
 
 impl Sketch {
+    /// The transitions, those together that leave a superstate: the first of them stands for all. Within a superstate, where
+    /// graphs have no arrow from its border, each stands for itself.
+    pub(super) fn drawn_links(&self) -> Vec<(Source, &Link)> {
+        let drawn = |arrow: &Arrow| -> Vec<(Source, &Link)> {
+            let links = || arrow.transitions.iter().map(|&number| &self.links[number]);
+            match (arrow.source, arrow.target) {
+                (Source::Superstate(number), Some(target))
+                    if !self.superstates[number].1.contains(&target) =>
+                {
+                    links().take(1).map(|link| (arrow.source, link)).collect()
+                }
+                _ => links().map(|link| (Source::Location(link.source), link)).collect(),
+            }
+        };
+        self.arrows.iter().flat_map(drawn).collect()
+    }
+
     /// The locations in their order, but those of a superstate one after another.
     pub(super) fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = Vec::new();

@@ -107,7 +107,10 @@ fn rows<'a>(automaton: &'a Outline<'a>) -> Vec<Row<'a>> {
         let of_event: Vec<_> = arrows.iter().filter(|arrow| of(arrow).event == event).collect();
         let stands = match &of_event[..] {
             [_] => Stands::Only,
-            [first, others @ ..] if others.iter().all(|other| is_same(of(first), of(other))) => {
+            [first, others @ ..]
+                if others.iter().all(|other| of(first).reads_like(of(other)))
+                    && is_one_from_each_source(automaton, event) =>
+            {
                 Stands::ForAll
             }
             _ => Stands::Alone,
@@ -122,9 +125,12 @@ fn rows<'a>(automaton: &'a Outline<'a>) -> Vec<Row<'a>> {
     rows
 }
 
-/// Whether guard and reset read the same.
-fn is_same(one: &Transition<'_>, other: &Transition<'_>) -> bool {
-    one.guard == other.guard && one.effect.to_string() == other.effect.to_string()
+/// Whether the location × event table shows all transitions on an event: no location has two.
+fn is_one_from_each_source(automaton: &Outline<'_>, event: usize) -> bool {
+    let on_event = automaton.transitions.iter().filter(|transition| transition.event == event);
+    let mut sources: Vec<usize> = on_event.map(|transition| transition.source).collect();
+    sources.sort_unstable();
+    sources.is_sorted_by(|one, next| one < next)
 }
 
 /// The superstates, with their locations.

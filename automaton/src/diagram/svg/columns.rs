@@ -40,6 +40,7 @@ pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
     let columns = columns(sketch, MARGIN + label_width + GAP);
     let right = columns.iter().map(Column::right).fold(MARGIN + label_width, f64::max);
     let brackets = brackets(sketch, &columns);
+    let right = brackets.iter().map(Bracket::right_of_name).fold(right, f64::max);
     let levels = brackets.iter().map(|bracket| bracket.level + 1).max().unwrap_or_default();
     let top = MARGIN + ENTRANCE + levels as f64 * BRACKET;
     let bottom = stack(&mut rows, top + box_height(&columns) + PADDING);
@@ -129,6 +130,16 @@ struct Bracket {
     level: usize,
 }
 
+impl Bracket {
+    fn middle(&self) -> f64 {
+        (self.left + self.right) / 2.0
+    }
+
+    fn right_of_name(&self) -> f64 {
+        self.middle() + text_width(self.name) / 2.0
+    }
+}
+
 fn brackets(sketch: &Sketch, columns: &[Column]) -> Vec<Bracket> {
     let superstates = sketch.superstates.iter().enumerate();
     let bracket = |(number, (name, members)): (usize, &(&'static str, Vec<usize>))| {
@@ -145,8 +156,7 @@ fn brackets(sketch: &Sketch, columns: &[Column]) -> Vec<Bracket> {
 
 fn draw_bracket(canvas: &mut Canvas, bracket: &Bracket) {
     let y = MARGIN + bracket.level as f64 * BRACKET + LINE_HEIGHT / 2.0;
-    let middle = (bracket.left + bracket.right) / 2.0;
-    canvas.label(Pixel { x: middle, y }, bracket.name, "key middle");
+    canvas.label(Pixel { x: bracket.middle(), y }, bracket.name, "key middle");
     let [left, right] = [bracket.left, bracket.right].map(number);
     let [top, foot] = [y + LINE_HEIGHT / 2.0, y + LINE_HEIGHT / 2.0 + BRACKET / 4.0].map(number);
     canvas.enrich();

@@ -32,7 +32,7 @@ impl AccessPoint {
     }
 
     fn forget_heard(&mut self) {
-        self.audience.clear();
+        self.neighbours.clear();
         self.has_news = true;
     }
 
@@ -122,7 +122,7 @@ impl AccessPoint {
             site: _,
             // Between two stimuli an access point has nothing left to do.
             schedule: _,
-            audience: _,
+            neighbours: _,
             has_news: _,
             outbox: _,
             // The explorer stands for time; without it no robot is missed, and no task, and none restarts.

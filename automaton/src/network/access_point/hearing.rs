@@ -8,7 +8,7 @@ use crate::network::beacon::Beacon;
 
 /// The nodes in range, by their numbers.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Audience {
+pub(super) struct Neighbours {
     table: Vec<Neighbour>,
     /// Where the next beacon is expected.
     expected: usize,
@@ -40,7 +40,7 @@ impl Neighbour {
     }
 }
 
-impl Audience {
+impl Neighbours {
     /// The beacon received last of each node in range, by their senders.
     pub(super) fn beacons(&self) -> impl Iterator<Item = &Beacon> {
         self.table.iter().map(|neighbour| &*neighbour.beacon)
@@ -77,7 +77,7 @@ impl Audience {
 }
 
 #[cfg(any(test, feature = "abstraction"))]
-impl Audience {
+impl Neighbours {
     /// Forgets what all nodes have sent.
     pub(super) fn clear(&mut self) {
         self.table.clear();
@@ -96,28 +96,30 @@ mod tests {
 
     #[test]
     fn another_beacon_is_news_and_the_same_again_is_not() {
-        let mut audience = Audience::default();
+        let mut neighbours = Neighbours::default();
         let [one, same, two] = [beacon(3), beacon(3), beacon(1)];
-        assert!(audience.receive(&one) && !audience.receive(&one) && audience.receive(&same));
-        assert!(audience.receive(&two) && !audience.receive(&two));
-        assert_eq!(audience.beacons().map(|it| it.sender).collect::<Vec<_>>(), [1, 3]);
+        assert!(neighbours.receive(&one) && !neighbours.receive(&one) && neighbours.receive(&same));
+        assert!(neighbours.receive(&two) && !neighbours.receive(&two));
+        assert_eq!(neighbours.beacons().map(|it| it.sender).collect::<Vec<_>>(), [1, 3]);
     }
 
     #[test]
     fn a_beacon_that_arrives_after_a_newer_one_is_no_news() {
-        let mut audience = Audience::default();
+        let mut neighbours = Neighbours::default();
         let newer = Arc::new(Beacon { offers_made: 2, ..Beacon::silent(3, Point::origin()) });
-        assert!(audience.receive(&newer) && !audience.receive(&beacon(3)));
-        assert_eq!(audience.beacons().next().map(|it| it.offers_made), Some(2));
+        assert!(neighbours.receive(&newer) && !neighbours.receive(&beacon(3)));
+        assert_eq!(neighbours.beacons().next().map(|it| it.offers_made), Some(2));
     }
 
     #[test]
     fn nodes_that_are_silent_are_out_of_range() {
-        let mut audience = Audience::default();
+        let mut neighbours = Neighbours::default();
         let [one, two] = [beacon(1), beacon(2)];
-        assert!(audience.receive(&one) && audience.receive(&two) && !audience.forget_silent());
-        audience.expect_all();
-        assert!(!audience.receive(&two) && audience.forget_silent());
-        assert_eq!(audience.beacons().map(|it| it.sender).collect::<Vec<_>>(), [2]);
+        assert!(
+            neighbours.receive(&one) && neighbours.receive(&two) && !neighbours.forget_silent()
+        );
+        neighbours.expect_all();
+        assert!(!neighbours.receive(&two) && neighbours.forget_silent());
+        assert_eq!(neighbours.beacons().map(|it| it.sender).collect::<Vec<_>>(), [2]);
     }
 }

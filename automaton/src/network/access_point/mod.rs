@@ -40,7 +40,7 @@ use crate::node::{Input, Node};
 
 pub use attendance::AttendanceAutomaton;
 pub(super) use attendance::PATIENCE;
-use hearing::Audience;
+use hearing::Neighbours;
 use roster::Roster;
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton};
 use schedule::Schedule;
@@ -72,7 +72,7 @@ pub struct AccessPoint {
     /// Where it is in its control period.
     schedule: Schedule,
     /// The nodes that it receives.
-    audience: Audience,
+    neighbours: Neighbours,
     /// Whether anything has changed that it processes at the end of a round.
     has_news: bool,
     /// The newest roll, and where robots were.
@@ -97,7 +97,7 @@ impl AccessPoint {
         let mut point = AccessPoint {
             number,
             schedule: Schedule::due(site.settings.period),
-            audience: Audience::default(),
+            neighbours: Neighbours::default(),
             has_news: true,
             membership: Membership::default(),
             roster: Roster::default(),
@@ -195,7 +195,7 @@ impl AccessPoint {
 
     /// Where robots that do not take part were received last, here or by the nodes that are received.
     fn locate_wrecks(&mut self) {
-        let reported = self.audience.beacons().flat_map(|beacon| beacon.wrecks.iter().copied());
+        let reported = self.neighbours.beacons().flat_map(|beacon| beacon.wrecks.iter().copied());
         self.membership.locate_wrecks(reported, |robot| self.site.start_of(robot));
     }
 
@@ -211,7 +211,7 @@ impl AccessPoint {
         self.receive_announcements();
         let mut newest = self.notices.bulletin().clone();
         let receive = |has_news, beacon: &Beacon| newest.merge(&beacon.bulletin) || has_news;
-        if self.audience.beacons().fold(false, receive) {
+        if self.neighbours.beacons().fold(false, receive) {
             // What it does not take up now it receives again.
             self.has_news = true;
             self.tasks.offer(Some(newest));
@@ -221,16 +221,16 @@ impl AccessPoint {
             self.jump()?;
             self.tasks.offer(None);
         }
-        self.audience.beacons().for_each(|beacon| self.ballot.merge(beacon));
+        self.neighbours.beacons().for_each(|beacon| self.ballot.merge(beacon));
         Ok(())
     }
 
     fn receive_announcements(&mut self) {
-        let received = self.audience.beacons().filter_map(|beacon| beacon.announced.as_ref());
+        let received = self.neighbours.beacons().filter_map(|beacon| beacon.announced.as_ref());
         if let Some(newest) = received.max_by_key(|&&(id, _)| id).cloned() {
             self.learn(newest);
         }
-        self.audience.beacons().for_each(|beacon| self.notices.merge(beacon, &self.site));
+        self.neighbours.beacons().for_each(|beacon| self.notices.merge(beacon, &self.site));
     }
 
     /// Takes over an announcement that is newer than its own.
@@ -309,7 +309,7 @@ impl AccessPoint {
             return;
         }
         let own = Anchor::Access(self.number);
-        for beacon in self.audience.beacons() {
+        for beacon in self.neighbours.beacons() {
             let Some((_, onward)) = beacon.route.as_ref().filter(|(call, _)| *call == id) else {
                 continue;
             };
@@ -332,7 +332,7 @@ impl AccessPoint {
     fn survey_robots(&mut self) {
         let own = Anchor::Access(self.number);
         let mut here = Reports::default();
-        for beacon in self.audience.beacons().filter(|beacon| beacon.duty.is_some()) {
+        for beacon in self.neighbours.beacons().filter(|beacon| beacon.duty.is_some()) {
             here.take_in(beacon, beacon.is_attached_to(own), self.id(), true);
         }
         self.update_roster(here.clone());
@@ -345,7 +345,7 @@ impl AccessPoint {
     /// knows no way to an access point, on its way along Σ or with a parent that has failed, is not missed as long as it is
     /// received.
     fn update_roster(&mut self, mut reports: Reports) {
-        for beacon in self.audience.beacons().filter(|beacon| beacon.duty.is_none()) {
+        for beacon in self.neighbours.beacons().filter(|beacon| beacon.duty.is_none()) {
             reports.take_in_branch(beacon);
         }
         if self.roster.is_kept() {
@@ -448,7 +448,7 @@ impl AccessPoint {
             self.schedule.receive_later_period(period);
             self.outbox.send_beacon_again();
         }
-        self.has_news |= self.audience.receive(beacon);
+        self.has_news |= self.neighbours.receive(beacon);
         if beacon.duty.is_some() {
             self.membership.note(Wreck::heard(beacon.sender, beacon.position, period));
             beacon.sightings(period).for_each(|seen| self.membership.note(seen));
@@ -458,7 +458,7 @@ impl AccessPoint {
     /// After the first rounds all nodes in range have sent: those that were silent are out of range.
     fn forget_silent(&mut self) {
         if self.schedule.have_all_sent() {
-            self.has_news |= self.audience.forget_silent();
+            self.has_news |= self.neighbours.forget_silent();
         }
     }
 

@@ -20,7 +20,7 @@ pub(super) struct Roster {
     present: Arc<IdSet>,
     /// The robots that are attached to an access point.
     connected: Arc<IdSet>,
-    /// For how many rounds both have stayed the same.
+    /// For how many rounds the robots that take part, and which of them are connected, have stayed the same.
     settled_rounds: usize,
     /// The robots that take part and do not elect by the newest announcement: they have joined, or come back, since.
     joiners: IdSet,

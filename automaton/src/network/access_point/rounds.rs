@@ -78,7 +78,7 @@ impl AccessPoint {
                 RoundAct::RestartClock => {
                     self.schedule.begin_period();
                     self.outbox.send_beacon_again();
-                    self.audience.expect_all();
+                    self.neighbours.expect_all();
                 }
                 RoundAct::CallRoll => self.call_roll()?,
                 RoundAct::Forget => self.forget_silent(),

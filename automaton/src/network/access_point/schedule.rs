@@ -15,7 +15,7 @@ pub(super) struct Schedule {
     clock: f64,
     /// How many control periods have begun.
     period: u32,
-    /// Whether no other node has been received yet.
+    /// Whether the first control period has not ended: until then the access point joins the period of others.
     is_new: bool,
     /// Whether another node has begun the next control period.
     is_behind: bool,
@@ -71,7 +71,7 @@ impl Schedule {
         self.period
     }
 
-    /// Whether no other node has been received yet.
+    /// Whether the first control period has not ended.
     pub(super) const fn is_new(&self) -> bool {
         self.is_new
     }
@@ -86,10 +86,10 @@ impl Schedule {
         self.clock
     }
 
-    /// Seconds until the access point has something to do, where samples are `period` seconds apart.
-    pub(super) fn time_to_tick(&self, period: f64) -> f64 {
+    /// Seconds until the access point has something to do, where samples are `interval` seconds apart.
+    pub(super) fn time_to_tick(&self, interval: f64) -> f64 {
         match self.round() == 0 && !self.is_behind {
-            true => (period - self.clock).max(0.0),
+            true => (interval - self.clock).max(0.0),
             false => 0.0,
         }
     }
@@ -112,7 +112,7 @@ impl Schedule {
         self.period = self.period.saturating_add(1);
     }
 
-    /// A round is over.
+    /// The work of a row is done.
     pub(super) fn end_round(&mut self) {
         self.is_new &= self.round() > 0;
     }

@@ -106,10 +106,10 @@ fn it_processes_what_has_changed() {
     assert!(!is_news(&mut point, &here), "the same again");
     assert!(is_news(&mut point, &moved), "another one");
     assert!(!is_news(&mut point, &moved), "that one again");
-    point.audience.expect_all();
+    point.neighbours.expect_all();
     point.forget_silent();
     assert!(
-        point.has_news && point.audience.beacons().next().is_none(),
+        point.has_news && point.neighbours.beacons().next().is_none(),
         "nothing is heard of it any more"
     );
 }
@@ -323,8 +323,8 @@ impl AccessPoint {
         let (outcome, reason) = (Outcome::InsufficientRobots, "too few".to_owned().into());
         let end = Notice::Ended { outcome, reason, task: Some(0) };
         let bulletin = self.notices.bulletin().next(1, Shared::new(end));
-        self.audience.clear();
-        self.audience.receive(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }));
+        self.neighbours.clear();
+        self.neighbours.receive(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }));
         self.receive_notices().expect("guards have values");
         self.outbox.take_reports()
     }
@@ -410,8 +410,8 @@ fn what_follows_an_end_is_taken_up() {
     assert!(matches!(point.notice(), Notice::Ended { .. }));
     let bulletin =
         point.notices.bulletin().superseding(5, Shared::new(Notice::Advance { joined: None }));
-    point.audience.clear();
-    point.audience.receive(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }));
+    point.neighbours.clear();
+    point.neighbours.receive(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }));
     point.receive_notices().expect("guards have values");
     assert_eq!(*point.notice(), Notice::Advance { joined: None });
 }
