@@ -343,6 +343,11 @@ impl Site {
         known.max(told.min(self.nodes()))
     }
 
+    /// The number of the user, after those of robots and access points.
+    pub(super) const fn user(&self) -> NodeId {
+        self.nodes()
+    }
+
     /// How many robots and access points there are.
     pub const fn nodes(&self) -> usize {
         self.robots + self.access_points.len()

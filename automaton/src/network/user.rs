@@ -281,7 +281,7 @@ impl Node for User {
     }
 
     fn check_invariant(&self) -> Result<(), RobotError> {
-        let node = self.site.nodes();
+        let node = self.site.user();
         let holds = self.site.automata.request.check_invariant(self.request.location(), self);
         holds.map_err(|source| RobotFault::Invariant { node, source }.into())
     }

@@ -202,8 +202,7 @@ impl AccessPoint {
     /// The first access point sends the user the newest notice.
     fn tell_user(&self, outputs: &mut NodeOutputs) {
         if self.is_first() {
-            let user = self.site.nodes();
-            outputs.send(user, Message::News(self.notices.bulletin().clone()));
+            outputs.send(self.site.user(), Message::News(self.notices.bulletin().clone()));
         }
     }
 
@@ -216,7 +215,7 @@ impl AccessPoint {
             self.has_news = true;
             self.tasks.offer(Some(newest));
             if self.hears_want() {
-                self.tasks.want_in(self.schedule.period());
+                self.tasks.report_failure_in(self.schedule.period());
             }
             self.jump()?;
             self.tasks.offer(None);

@@ -93,7 +93,7 @@ crate::observed! {
         /// The newest notice received says that the mission has ended for lack of robots.
         hears_want: point.hears_want(),
         /// A notice that the mission has ended for lack of robots has been received since the task was announced.
-        wants_robots: point.tasks.wants_robots(),
+        wants_robots: point.tasks.lacks_robots(),
         /// A task that no robot can service is given up, and the mission goes on.
         skips_tasks: point.site.settings.unreachable == Unreachable::Skip,
         /// The user has asked it for tasks.

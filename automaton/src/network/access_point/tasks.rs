@@ -27,7 +27,7 @@ pub(super) struct Tasks {
     /// The control period in which a task was announced last.
     announced_in: u32,
     /// The control period in which that task was reported as given up for lack of robots.
-    wanted_in: Option<u32>,
+    failed_in: Option<u32>,
 }
 
 /// A task that has been serviced.
@@ -63,7 +63,7 @@ impl Default for Tasks {
             given_up: Vec::new(),
             closed_in: None,
             announced_in: 0,
-            wanted_in: None,
+            failed_in: None,
         }
     }
 }
@@ -175,7 +175,7 @@ impl Tasks {
 
     /// A task is announced in this control period.
     pub(super) const fn announce_in(&mut self, period: u32) {
-        (self.announced_in, self.wanted_in) = (period, None);
+        (self.announced_in, self.failed_in) = (period, None);
     }
 
     /// A task that had been announced is over in this control period.
@@ -184,23 +184,23 @@ impl Tasks {
     }
 
     /// The task that was announced last is reported as given up for lack of robots.
-    pub(super) fn want_in(&mut self, period: u32) {
-        self.wanted_in.get_or_insert(period);
+    pub(super) fn report_failure_in(&mut self, period: u32) {
+        self.failed_in.get_or_insert(period);
     }
 
     /// Whether that task has been reported as given up for lack of robots.
-    pub(super) const fn wants_robots(&self) -> bool {
-        self.wanted_in.is_some()
+    pub(super) const fn lacks_robots(&self) -> bool {
+        self.failed_in.is_some()
     }
 
-    /// Whether robots were not redundant when the last task was announced that may be now, as a task has ended.
+    /// Whether a task has ended so late that its robots were not redundant yet when the last task was announced.
     pub(super) fn has_freed(&self, longest_wait: usize) -> bool {
         self.closed_in.is_some_and(|end| self.announced_in < retired_by(end, longest_wait))
     }
 
-    /// Whether these, or the robots of a team that has given up, may have yet to become redundant.
+    /// Whether such robots, or robots of a team that has given up, may still become redundant.
     pub(super) fn awaits_retirements(&self, longest_wait: usize, period: u32) -> bool {
-        let ends = self.closed_in.into_iter().chain(self.wanted_in);
+        let ends = self.closed_in.into_iter().chain(self.failed_in);
         let is_awaited = |end| period < retired_by(end, longest_wait);
         self.has_freed(longest_wait) && ends.max().is_some_and(is_awaited)
     }
@@ -272,11 +272,11 @@ mod tests {
         let free = retired_by(20, 2);
         assert!(tasks.has_freed(2) && tasks.awaits_retirements(2, free - 1));
         assert!(!tasks.awaits_retirements(2, free));
-        tasks.want_in(40);
-        tasks.want_in(50);
-        assert!(tasks.wants_robots() && tasks.awaits_retirements(2, retired_by(40, 2) - 1));
+        tasks.report_failure_in(40);
+        tasks.report_failure_in(50);
+        assert!(tasks.lacks_robots() && tasks.awaits_retirements(2, retired_by(40, 2) - 1));
         assert!(!tasks.awaits_retirements(2, retired_by(40, 2)), "the first report counts");
         tasks.announce_in(free);
-        assert!(!tasks.wants_robots() && !tasks.has_freed(2));
+        assert!(!tasks.lacks_robots() && !tasks.has_freed(2));
     }
 }
