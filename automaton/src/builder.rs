@@ -85,11 +85,17 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     }
 
     fn add_row(&mut self, row: &Row<L, E>) {
+        let row = self.numbered(row);
+        self.parts.rows.push(row);
+    }
+
+    /// The row with the numbers of its locations and event.
+    fn numbered(&mut self, row: &Row<L, E>) -> Row<usize, usize> {
         let Row { urgency, priority, .. } = *row;
         let source = number_of(row.source, &mut self.locations);
         let target = number_of(row.target, &mut self.locations);
         let event = number_of(row.event, &mut self.events);
-        self.parts.rows.push(Row { source, event, target, urgency, priority });
+        Row { source, event, target, urgency, priority }
     }
 
     fn given(&mut self, guard: Guard, reset: Reset<S>) -> Given {
@@ -101,12 +107,10 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     /// What the row from one location on one event carries over, and when; or the rows from each location of a
     /// superstate.
     pub fn carried_out(mut self, transfer: Transfer<L, E, S>) -> Self {
-        let Transfer { source, event, target, guard, reset } = transfer;
+        let Transfer { rule, guard, reset } = transfer;
         let given = self.given(guard, reset);
-        let event = number_of(event, &mut self.events);
-        for &location in source.locations() {
-            let ends = [location, target.unwrap_or(location)];
-            let [source, target] = ends.map(|end| number_of(end, &mut self.locations));
+        for row in rule.rows() {
+            let Row { source, event, target, .. } = self.numbered(&row);
             self.parts.transfers.push(([source, event, target], given.clone()));
         }
         self
@@ -124,15 +128,14 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     /// superstate. Several may leave one location on one event; where the guards of more than one hold, priority and
     /// order of declaration decide.
     pub fn transition(mut self, edge: Edge<L, E, S>) -> Self {
-        let Edge { source, event, target, urgency, priority, guard, reset } = edge;
+        let Edge { rule, guard, reset } = edge;
         let given = self.given(guard, reset);
-        for &location in source.locations() {
+        for row in rule.rows() {
             self.parts.edges.push((self.parts.rows.len(), given.clone()));
-            let target = target.unwrap_or(location);
-            self.add_row(&Row { source: location, event, target, urgency, priority });
+            self.add_row(&row);
         }
-        if let Source::Superstate(superstate) = source {
-            self.note(&superstate);
+        if let Source::Superstate(superstate) = rule.source() {
+            self.note(superstate);
         }
         self
     }

@@ -1,6 +1,7 @@
 //! Transitions as one writes them: from where, on which event, to where, how urgently, when.
 
-use pleach_discrete::{Row, Source, Superstate, Urgency};
+use pleach_discrete::superstate;
+use pleach_discrete::{Row, Rule, Superstate, Urgency};
 use pleach_guards::Guard;
 
 use crate::reset::Reset;
@@ -29,7 +30,7 @@ use crate::reset::Reset;
 /// # let _: Edge<Motion, Contact, Ball> = bounce;
 /// ```
 pub fn from<L>(location: L) -> Departure<L> {
-    Departure { source: Source::Location(location) }
+    Departure(superstate::from(location))
 }
 
 /// Begins the transition that leaves each location of a superstate: in all of them it has the same guard and does the
@@ -61,68 +62,53 @@ pub fn from<L>(location: L) -> Departure<L> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn from_any<L>(superstate: Superstate<L>) -> Departure<L> {
-    Departure { source: Source::Superstate(superstate) }
+    Departure(superstate::from_any(superstate))
 }
 
 /// A transition that says where it begins; see [`from`].
 #[must_use = "say on which event"]
 #[derive(Clone, Copy, Debug)]
-pub struct Departure<L: 'static> {
-    source: Source<L>,
-}
+pub struct Departure<L: 'static>(superstate::Departure<L>);
 
 /// A transition that says where it begins and on which event; see [`from`].
 #[must_use = "say where it leads"]
 #[derive(Clone, Copy, Debug)]
-pub struct Trigger<L: 'static, E> {
-    source: Source<L>,
-    event: E,
-}
+pub struct Trigger<L: 'static, E>(superstate::Trigger<L, E>);
 
 /// A transition that lacks its urgency and guard; see [`from`].
 #[must_use = "say how urgent it is: may, must or at once"]
 #[derive(Clone, Copy, Debug)]
-pub struct Arrow<L: 'static, E> {
-    source: Source<L>,
-    event: E,
-    /// None: the location stays the same.
-    target: Option<L>,
-}
+pub struct Arrow<L: 'static, E>(Rule<L, E>);
 
 /// A transition with everything that it needs; see [`from`].
 #[must_use = "give it to a builder"]
 #[derive(Clone, Debug)]
 pub struct Edge<L: 'static, E, S> {
-    pub(crate) source: Source<L>,
-    pub(crate) event: E,
-    /// None: the location stays the same.
-    pub(crate) target: Option<L>,
-    pub(crate) urgency: Urgency,
-    pub(crate) priority: u8,
+    pub(crate) rule: Rule<L, E>,
     pub(crate) guard: Guard,
     pub(crate) reset: Reset<S>,
 }
 
-impl<L> Departure<L> {
+impl<L: Copy> Departure<L> {
     /// On this event.
-    pub fn on<E>(self, event: E) -> Trigger<L, E> {
-        Trigger { source: self.source, event }
+    pub fn on<E: Copy>(self, event: E) -> Trigger<L, E> {
+        Trigger(self.0.on(event))
     }
 }
 
-impl<L, E> Trigger<L, E> {
+impl<L: Copy, E: Copy> Trigger<L, E> {
     /// To this location.
     pub fn to(self, location: L) -> Arrow<L, E> {
-        Arrow { source: self.source, event: self.event, target: Some(location) }
+        Arrow(self.0.to(location))
     }
 
     /// To the location in which it is taken.
     pub fn stay(self) -> Arrow<L, E> {
-        Arrow { source: self.source, event: self.event, target: None }
+        Arrow(self.0.stay())
     }
 }
 
-impl<L, E> Arrow<L, E> {
+impl<L: Copy, E: Copy> Arrow<L, E> {
     /// It may be taken where `guard` holds; time may pass instead. [`Urgency::May`]
     pub fn may<S>(self, guard: impl Into<Guard>) -> Edge<L, E, S> {
         self.when(Urgency::May, guard.into())
@@ -139,17 +125,14 @@ impl<L, E> Arrow<L, E> {
     }
 
     fn when<S>(self, urgency: Urgency, guard: Guard) -> Edge<L, E, S> {
-        let Arrow { source, event, target } = self;
-        Edge { source, event, target, urgency, priority: 0, guard, reset: Reset::identity() }
+        Edge { rule: self.0.urgency(urgency), guard, reset: Reset::identity() }
     }
 }
 
-impl<L, E, S> Edge<L, E, S> {
+impl<L: Copy, E: Copy, S> Edge<L, E, S> {
     /// The transition of this row.
     pub(crate) fn of_row(row: Row<L, E>, guard: Guard, reset: Reset<S>) -> Self {
-        let Row { source, event, target, urgency, priority } = row;
-        let source = Source::Location(source);
-        Edge { source, event, target: Some(target), urgency, priority, guard, reset }
+        Edge { rule: Rule::of(row), guard, reset }
     }
 
     /// What it does to the state; without this, nothing.
@@ -159,8 +142,7 @@ impl<L, E, S> Edge<L, E, S> {
 
     /// Which goes first where several could be taken: 0, which is the default, before 1, and so
     /// on. Of transitions of one priority the one given first goes first; a check reports them.
-    pub fn priority(mut self, priority: u8) -> Self {
-        self.priority = priority;
-        self
+    pub fn priority(self, priority: u8) -> Self {
+        Edge { rule: self.rule.priority(priority), ..self }
     }
 }

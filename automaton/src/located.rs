@@ -70,7 +70,8 @@
 
 use std::ops::Deref;
 
-use pleach_discrete::{Event, Location, Source, Superstate};
+use pleach_discrete::superstate;
+use pleach_discrete::{Event, Location, Rule, Superstate};
 use pleach_guards::{EvaluationError, Guard, Valuation};
 
 use crate::reset::Reset;
@@ -140,10 +141,7 @@ pub trait Holds<P: Place> {
 /// and the effects that it notes are carried out afterwards.
 #[derive(Clone, Debug)]
 pub struct Transfer<L: 'static, E, S> {
-    pub(crate) source: Source<L>,
-    pub(crate) event: E,
-    /// None: the location stays the same.
-    pub(crate) target: Option<L>,
+    pub(crate) rule: Rule<L, E>,
     pub(crate) guard: Guard,
     pub(crate) reset: Reset<S>,
 }
@@ -186,9 +184,8 @@ impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
             let data = A::of(state.current()).ok_or(A::LOCATION)?;
             carry_over(data, state, effects).map(B::into_place).ok_or(B::LOCATION)
         };
-        let (source, target) = (Source::Location(A::LOCATION), Some(B::LOCATION));
-        let reset = entering(name, Box::new(place_after));
-        Transfer { source, event, target, guard: guard.into(), reset }
+        let rule = superstate::from(A::LOCATION).on(event).to(B::LOCATION);
+        Transfer { rule, guard: guard.into(), reset: entering(name, Box::new(place_after)) }
     }
 
     /// As [`new`](Self::new), from each location of a superstate, whose data are read as the enum of places.
@@ -226,9 +223,8 @@ impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
         let place_after = move |state: &S, effects: &mut S::Effects| {
             carry_over(state.current(), state, effects).map(B::into_place).ok_or(B::LOCATION)
         };
-        let (source, target) = (Source::Superstate(superstate), Some(B::LOCATION));
-        let reset = entering(name, Box::new(place_after));
-        Transfer { source, event, target, guard: guard.into(), reset }
+        let rule = superstate::from_any(superstate).on(event).to(B::LOCATION);
+        Transfer { rule, guard: guard.into(), reset: entering(name, Box::new(place_after)) }
     }
 
     /// From each location of a superstate to itself, with the same data: only effects follow. None is an error, as in
@@ -248,9 +244,8 @@ impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
             let place: &P = state.current();
             act(place, state, effects).map(|()| place.clone()).ok_or(place.location())
         };
-        let source = Source::Superstate(superstate);
-        let reset = entering(name, Box::new(place_after));
-        Transfer { source, event, target: None, guard: guard.into(), reset }
+        let rule = superstate::from_any(superstate).on(event).stay();
+        Transfer { rule, guard: guard.into(), reset: entering(name, Box::new(place_after)) }
     }
 }
 

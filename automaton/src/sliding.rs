@@ -176,7 +176,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     }
 
     /// The transition of a row between other locations.
-    fn edge<M>(&self, number: usize, source: M, target: M) -> Edge<M, E, S> {
+    fn edge<M: Copy>(&self, number: usize, source: M, target: M) -> Edge<M, E, S> {
         let Row { event, urgency, priority, .. } = self.rows[number];
         let transition = &self.graph[petgraph::graph::EdgeIndex::new(number)];
         let row = Row { source, event, target, urgency, priority };

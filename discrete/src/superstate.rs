@@ -114,6 +114,17 @@ impl<L: Copy, E: Copy> Rule<L, E> {
         Rule { priority, ..self }
     }
 
+    /// The rule of one row.
+    pub const fn of(row: Row<L, E>) -> Self {
+        let Row { source, event, target, urgency, priority } = row;
+        from(source).on(event).to(target).urgency(urgency).priority(priority)
+    }
+
+    /// Its rows, in the order of the locations.
+    pub fn rows(&self) -> impl Iterator<Item = Row<L, E>> {
+        self.source.locations().iter().map(|&location| self.row(location))
+    }
+
     /// Where it begins.
     pub const fn source(&self) -> &Source<L> {
         &self.source

@@ -98,7 +98,8 @@ pub enum BuildError {
         /// What is wrong with the period or the phase, and what would be right.
         reason: String,
     },
-    /// An event has two guards, two transfers from one location or is sampled twice, or a location has two flows or two invariants.
+    /// An event has two guards, two transfers from one location, or is sampled twice; or a location has two flows or
+    /// invariants.
     #[error("`{place}` is given its {part} twice: keep one")]
     GivenTwice {
         /// The event or the location.

@@ -132,6 +132,17 @@ pub struct Shifting {
     pub left: Option<PostId>,
 }
 
+/// Where a duty leads its robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Course {
+    /// Nowhere: the robot holds a post ([`Activity::AT_REST`]).
+    AtPost,
+    /// To the next place of Σ.
+    AlongPath(Shifting),
+    /// Where the primary team goes ([`Activity::IN_TEAM`]).
+    WithTeam,
+}
+
 impl Duty {
     /// What the robot holds, if it holds a post.
     pub(super) const fn held(&self) -> Option<&Held> {
@@ -208,9 +219,24 @@ impl Duty {
         }
     }
 
+    /// Where the duty leads its robot.
+    pub(super) const fn course(&self) -> Course {
+        match *self {
+            Duty::Standby(_)
+            | Duty::Relay(_)
+            | Duty::Junction(_)
+            | Duty::Leaf(_)
+            | Duty::Bound(_)
+            | Duty::Waiting(_)
+            | Duty::AwaitingRelease(_) => Course::AtPost,
+            Duty::Shifting(shifting) => Course::AlongPath(shifting),
+            Duty::Following(_) | Duty::Leading(_) => Course::WithTeam,
+        }
+    }
+
     /// Whether the duty is to move with the primary team.
     pub fn is_primary(&self) -> bool {
-        matches!(self, Duty::Following(_) | Duty::Leading(_))
+        matches!(self.course(), Course::WithTeam)
     }
 
     /// Whether the robot holds the post of a redundant robot.

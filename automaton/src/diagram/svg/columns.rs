@@ -163,7 +163,7 @@ fn draw_bracket(canvas: &mut Canvas, bracket: &Bracket) {
     canvas.path(&format!("M {left} {foot} V {top} H {right} V {foot}"), "frame", false);
 }
 
-/// By event: first those of the event that is declared first.
+/// The rows in the order in which their events are declared.
 fn rows(sketch: &Sketch) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     let links = sketch.arrows.iter().flat_map(|arrow| {

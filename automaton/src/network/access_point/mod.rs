@@ -290,7 +290,7 @@ impl AccessPoint {
         }
     }
 
-    /// Whether robots were not redundant when it announced its task that may be now, as a task has ended.
+    /// Whether a task has ended so late that its robots were not redundant yet when it announced its own task.
     fn has_freed(&self) -> bool {
         self.tasks.has_freed(self.notices.longest_wait())
     }

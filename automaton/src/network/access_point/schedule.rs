@@ -120,7 +120,7 @@ impl Schedule {
 
 #[cfg(any(test, feature = "abstraction"))]
 impl Schedule {
-    /// This control period is under way; others have been received before, or not.
+    /// This control period is under way, and is the first or not.
     pub(super) const fn join(&mut self, period: u32, is_new: bool) {
         (self.period, self.is_new) = (period, is_new);
     }

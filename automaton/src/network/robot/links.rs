@@ -11,7 +11,7 @@ use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
-use crate::network::duty::{Duty, Hop, Shifting};
+use crate::network::duty::{Course, Duty, Hop, Shifting};
 
 /// Control periods within which both robots of an exchange are heard with their new posts, while some messages
 /// get through.
@@ -71,18 +71,12 @@ impl Robot {
     /// their link becomes. On Σ an access point may be its parent that is not within range yet.
     pub(super) fn would_lose_parent(&self) -> bool {
         let parent = self.tree_parent();
-        match *self.duty {
-            Duty::Shifting(_) => parent.is_none(),
-            Duty::Leading(_) | Duty::Following(_) => {
+        match self.duty.course() {
+            Course::AlongPath(_) => parent.is_none(),
+            Course::WithTeam => {
                 self.anchor().is_some() && parent.and_then(|node| self.neighbour(node)).is_none()
             }
-            Duty::Standby(_)
-            | Duty::Relay(_)
-            | Duty::Junction(_)
-            | Duty::Leaf(_)
-            | Duty::Bound(_)
-            | Duty::Waiting(_)
-            | Duty::AwaitingRelease(_) => false,
+            Course::AtPost => false,
         }
     }
 

@@ -15,7 +15,7 @@ use super::context::context;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
 use crate::automaton::TransitionError;
-use crate::network::duty::Duty;
+use crate::network::duty::Course;
 use crate::network::scenario::MotionSolver;
 
 /// A robot this share of ρ from the reference of its post has settled.
@@ -38,19 +38,13 @@ impl Robot {
     /// Whether the robot stands still unless it is asked for; robots that settle on their post
     /// count as parked.
     pub(super) fn is_parked(&self) -> bool {
-        match *self.duty {
-            Duty::Shifting(_) => self.active_subgroup().is_none(),
-            Duty::Following(_) | Duty::Leading(_) if self.goes_on_while_recruiting() => {
+        match self.duty.course() {
+            Course::AlongPath(_) => self.active_subgroup().is_none(),
+            Course::WithTeam if self.goes_on_while_recruiting() => {
                 self.body.still_periods() >= PERSISTENCE
             }
-            Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
-            Duty::Standby(_)
-            | Duty::Relay(_)
-            | Duty::Junction(_)
-            | Duty::Leaf(_)
-            | Duty::Bound(_)
-            | Duty::Waiting(_)
-            | Duty::AwaitingRelease(_) => true,
+            Course::WithTeam => self.phase() != Phase::Advance,
+            Course::AtPost => true,
         }
     }
 

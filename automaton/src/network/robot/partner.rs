@@ -26,7 +26,7 @@ use super::Robot;
 use super::exchanges::Progress;
 use super::hearing::Neighbour;
 use crate::network::beacon::{Announced, TeamReport};
-use crate::network::duty::{Duty, Shifting};
+use crate::network::duty::{Course, Duty, Shifting};
 
 /// Two robots touch when they are this many ρ apart; they never come closer than 2ρ.
 const CONTACT: f64 = 2.6;
@@ -108,13 +108,15 @@ impl Robot {
 
     /// Whether this robot is on a way that another could go on with. One that makes way for the team is not.
     fn may_hand_over(&self) -> bool {
-        match *self.duty {
-            Duty::Shifting(Shifting { place, .. }) => {
+        let makes_way =
+            || matches!(*self.duty, Duty::Following(_)) && self.way_to_clear().is_some();
+        match self.duty.course() {
+            Course::AlongPath(Shifting { place, .. }) => {
                 let active = self.active_subgroup();
                 active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
             }
-            Duty::Following(_) if self.way_to_clear().is_some() => false,
-            Duty::Following(_) | Duty::Leading(_) => match self.phase() {
+            Course::WithTeam if makes_way() => false,
+            Course::WithTeam => match self.phase() {
                 Phase::Advance => true,
                 Phase::Shift => self.goes_on_while_recruiting(),
                 Phase::Idle
@@ -123,13 +125,7 @@ impl Robot {
                 | Phase::PathAgreement
                 | Phase::Ended => false,
             },
-            Duty::Standby(_)
-            | Duty::Relay(_)
-            | Duty::Junction(_)
-            | Duty::Leaf(_)
-            | Duty::Bound(_)
-            | Duty::Waiting(_)
-            | Duty::AwaitingRelease(_) => false,
+            Course::AtPost => false,
         }
     }
 
